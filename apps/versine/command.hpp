@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "versine/core/error.hpp"
+
+namespace versine::cli {
+
+/// Exit codes of every command.
+enum Exit : int {
+  good = 0,        ///< done
+  unacceptable = 1,  ///< the job ran and found the result unacceptable
+  bad_input = 2,   ///< a file, a key or an argument is wrong
+  internal = 3,    ///< a fault of Versine's own
+};
+
+/// A sub-command: `add` declares its options on the application; the callback it leaves there returns the exit code
+/// through `exit`.
+struct Command {
+  void (*add)(CLI::App& app, int& exit);
+};
+
+/// All commands, in the order of the help. A new command is one file in commands/ and one line in main.cpp.
+void add_check(CLI::App& app, int& exit);
+void add_init(CLI::App& app, int& exit);
+
+/// Options that every job command has.
+struct JobOptions {
+  std::string job;
+  std::string output;
+  int threads = 0;  ///< 0: all cores
+  bool json = false;
+  bool quiet = false;
+  std::vector<std::string> set;
+};
+void add_job_options(CLI::App& command, JobOptions& options);
+
+/// Prints an error on standard error and returns the exit code for bad input.
+int report(const Error& error);
+
+}  // namespace versine::cli

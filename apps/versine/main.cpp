@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+#include <exception>
+
+#include "command.hpp"
+
+namespace versine::cli {
+
+void add_job_options(CLI::App& command, JobOptions& options) {
+  command.add_option("job", options.job, "Job file (TOML)")->required();
+  command.add_option("-o,--output", options.output, "Result folder (default: beside the job, named after it)");
+  command.add_option("--threads", options.threads, "Threads; 0 means all cores")->check(CLI::Range(0, 1024));
+  command.add_flag("--json", options.json, "Print a machine-readable summary");
+  command.add_flag("--quiet", options.quiet, "Print nothing but errors");
+  command.add_option("--set", options.set, "Override a key of the job: --set output.rate_hz=10")
+      ->type_name("KEY=VALUE")
+      ->take_all();
+}
+
+int report(const Error& error) {
+  std::fprintf(stderr, "versine: %s\n", error.message().c_str());
+  return bad_input;
+}
+
+}  // namespace versine::cli
+
+int main(int argc, char** argv) {
+  using namespace versine::cli;
+  CLI::App app{"Versine turns recordings from rails into positions and track geometry, with the uncertainty of every "
+               "number.\n\nStart with a template:  versine init survey > job.toml\nthen:                   versine "
+               "check job.toml && versine survey job.toml"};
+  app.set_version_flag("--version", std::string("versine ") + VERSINE_VERSION);
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+  int exit = good;
+  for (const auto add : {add_init, add_check}) add(app, exit);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? good : bad_input;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "versine: internal error: %s\n  please report this with the job file and the command\n",
+                 error.what());
+    return internal;
+  }
+  return exit;
+}
