@@ -20,6 +20,8 @@ function(versine_domain name)
   set_target_properties(versine_${name} PROPERTIES EXPORT_NAME ${name} LINKER_LANGUAGE CXX)
   target_include_directories(versine_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>)
+  target_compile_features(versine_${name} PUBLIC cxx_std_20)
+  target_compile_definitions(versine_${name} PUBLIC EIGEN_MAX_ALIGN_BYTES=16)  # part of the ABI
   target_link_libraries(versine_${name} PUBLIC ${arg_PUBLIC} $<BUILD_INTERFACE:versine_flags> PRIVATE ${arg_PRIVATE})
   set_property(GLOBAL APPEND PROPERTY VERSINE_DOMAINS versine_${name})
 

@@ -29,7 +29,8 @@ if(VERSINE_MOLD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 
 # AVX2 and FMA halve the time of the filter's dense kernels; 2013 and later processors have them.
-# EIGEN_MAX_ALIGN_BYTES keeps Eigen's memory layout the same with and without it, so that libraries can be mixed.
+# EIGEN_MAX_ALIGN_BYTES (VersineDomain.cmake) keeps Eigen's memory layout the same with and without them, so that
+# libraries can be mixed.
 include(CheckCXXSourceRuns)
 check_cxx_source_runs(
   "int main() { return __builtin_cpu_supports(\"avx2\") && __builtin_cpu_supports(\"fma\") ? 0 : 1; }" VERSINE_HOST_HAS_AVX2)
@@ -39,7 +40,6 @@ endif()
 set(VERSINE_ARCH "${VERSINE_ARCH_DEFAULT}" CACHE STRING "Value of -march; empty for the compiler's own default")
 
 add_library(versine_flags INTERFACE)
-target_compile_definitions(versine_flags INTERFACE EIGEN_MAX_ALIGN_BYTES=16)
 target_compile_options(versine_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Wno-psabi -Wno-missing-field-initializers
   -ffp-contract=fast
