@@ -19,8 +19,15 @@ struct ImuSample {
   Eigen::Vector3d dtheta = Eigen::Vector3d::Zero();  ///< integral of the angular rate of b against i, b-frame, rad
   Eigen::Vector3d dvel = Eigen::Vector3d::Zero();    ///< integral of the specific force, b-frame, m/s
 };
+/// What the samples of an ImuSeries hold. sensors::check_imu turns all of them into increments.
+enum class ImuContent {
+  increments,      ///< over the interval since the sample before
+  mean_rates,      ///< rates, mean over that interval, times the nominal interval
+  rates_at_stamp,  ///< rates at the stamp, times the nominal interval
+};
 struct ImuSeries : Series<ImuSample> {
   Duration interval;  ///< nominal sampling interval
+  ImuContent content = ImuContent::increments;
 };
 
 enum class FixType { none, single, differential, float_ambiguity, fixed, dead_reckoned };
@@ -28,9 +35,9 @@ enum class FixType { none, single, differential, float_ambiguity, fixed, dead_re
 /// One GNSS epoch: the antenna's position and, where given, velocity.
 struct GnssSample {
   Time time;
-  geodesy::Geodetic position;                          ///< antenna, WGS84
-  Eigen::Vector3d sigma_ned = Eigen::Vector3d::Zero();  ///< standard deviation north, east, down, m
-  std::optional<Eigen::Vector3d> v_ned;                ///< velocity relative to the Earth, m/s
+  geodesy::Geodetic position;                             ///< antenna, WGS84
+  Eigen::Vector3d sigma_ned = Eigen::Vector3d::Zero();    ///< standard deviation north, east, down, m
+  std::optional<Eigen::Vector3d> v_ned;                   ///< velocity relative to the Earth, m/s
   Eigen::Vector3d sigma_v_ned = Eigen::Vector3d::Zero();  ///< m/s, with v_ned
   FixType fix = FixType::single;
   int satellites = 0;  ///< 0: not told
@@ -53,10 +60,10 @@ struct SpeedSample {
 /// A position known from outside while the vehicle stands: a total station on the trolley that found itself between
 /// control points, a prism on the trolley seen from beside the track, or a marked point.
 struct LandmarkSample {
-  Time time;                  ///< middle of the standstill
-  Time from, to;              ///< the standstill
+  Time time;      ///< middle of the standstill
+  Time from, to;  ///< the standstill
   std::string name;
-  geodesy::Geodetic position;  ///< of the instrument's centre or the prism
+  geodesy::Geodetic position;                            ///< of the instrument's centre or the prism
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< n-frame, m^2
   std::optional<Eigen::Quaterniond> q_ns;                ///< attitude of the instrument s, when it was solved for
   Eigen::Matrix3d attitude_covariance = Eigen::Matrix3d::Zero();  ///< of the phi-angle in n, rad^2, with q_ns
