@@ -48,10 +48,12 @@ std::vector<double> Chainage::distances(double mileage, double length) const {
   std::vector<double> found;
   for (std::size_t i = 0; i < equations.size(); ++i) {
     const ChainageEquation& e = equations[i];
-    const bool first = i == 0, last = i + 1 == equations.size();
-    const double from = first ? -rounding : e.distance, to = last ? length + rounding : equations[i + 1].distance;
+    const double from = i == 0 ? 0.0 : e.distance;
+    const double to = i + 1 == equations.size() ? length : equations[i + 1].distance;
     const double distance = e.distance + (e.increasing ? 1.0 : -1.0) * (mileage - e.mileage);
-    if (distance >= from && (last ? distance <= to : distance < to)) found.push_back(distance);
+    // Two stretches meet: their common place is one place.
+    const bool again = !found.empty() && distance - found.back() <= 2.0 * rounding;
+    if (distance >= from - rounding && distance <= to + rounding && !again) found.push_back(distance);
   }
   return found;
 }

@@ -113,8 +113,8 @@ Local evaluate(const HorizontalElement& e, double u) {
   }
 }
 
-AxisPose placed(const Local& p, const MapPose& start) {
-  const double c = std::cos(start.heading), s = std::sin(start.heading);
+AxisPose placed(const Local& p, const MapPose& start, double scale = 1.0) {
+  const double c = scale * std::cos(start.heading), s = scale * std::sin(start.heading);
   AxisPose out;
   out.easting = start.easting + s * p.forward + c * p.right;
   out.northing = start.northing + c * p.forward - s * p.right;
@@ -173,7 +173,7 @@ Expected<HorizontalAxis> HorizontalAxis::chain(const MapPose& start, std::vector
   for (std::size_t i = 0; i < elements.size(); ++i) {
     if (auto good = check(elements[i], i); !good) return tl::unexpected(good.error());
     const double length = elements[i].length;
-    axis.elements_.push_back({std::move(elements[i]), pose, axis.length_});
+    axis.elements_.push_back({std::move(elements[i]), pose, axis.length_, 1.0});
     pose = pose_on(axis.elements_.back().element, pose, length);
     axis.length_ += length;
   }
@@ -185,17 +185,17 @@ Expected<HorizontalAxis> HorizontalAxis::chain(const MapPose& start, std::vector
   return axis;
 }
 
-Expected<HorizontalAxis> HorizontalAxis::place(const std::vector<HorizontalElement>& elements,
-                                               const std::vector<MapPose>& starts) {
+Expected<HorizontalAxis> HorizontalAxis::place(std::vector<Placed> elements) {
   HorizontalAxis axis;
   for (std::size_t i = 0; i < elements.size(); ++i) {
-    if (auto good = check(elements[i], i); !good) return tl::unexpected(good.error());
-    axis.elements_.push_back({elements[i], starts.at(i), axis.length_});
-    axis.length_ += elements[i].length;
+    if (auto good = check(elements[i].element, i); !good) return tl::unexpected(good.error());
+    elements[i].distance = axis.length_;
+    axis.length_ += elements[i].element.length;
   }
-  if (axis.elements_.empty()) {
+  if (elements.empty()) {
     return fail({.field = "horizontal alignment", .found = "no element", .expected = "at least one element"});
   }
+  axis.elements_ = std::move(elements);
   return axis;
 }
 
@@ -207,7 +207,7 @@ std::size_t HorizontalAxis::element_at(double distance) const {
 
 AxisPose HorizontalAxis::at(double distance, std::size_t element) const {
   const Placed& p = elements_[element];
-  return pose_on(p.element, p.start, std::clamp(distance - p.distance, 0.0, p.element.length));
+  return placed(evaluate(p.element, std::clamp(distance - p.distance, 0.0, p.element.length)), p.start, p.scale);
 }
 
 AxisPose HorizontalAxis::end() const {

@@ -58,9 +58,6 @@ class AxisIndex {
 /// Feet of the points of one run in its order: the first by the whole axis (or near `start`), each following one within
 /// `search` metres of the last, so that a run stays on its own turn where the line crosses or follows itself (spirals,
 /// loops, reversing). Where a foot falls on the edge of its stretch, the whole axis is searched again.
-struct MapPosition {
-  double easting = 0.0, northing = 0.0;
-};
 [[nodiscard]] std::vector<AxisFoot> project_run(const AxisIndex& index, std::span<const MapPosition> points,
                                                 double search = 50.0, const AxisRange& start = {});
 

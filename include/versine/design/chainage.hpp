@@ -29,7 +29,7 @@ class Chainage {
   [[nodiscard]] const std::vector<ChainageEquation>& equations() const { return equations_; }
   [[nodiscard]] double mileage(double distance) const;
   /// Every distance that carries this mileage, in order: none inside a jump forward, two where numbers repeat.
-  /// The last stretch ends at `length` (the axis's), the first begins at 0; both take 1 mm more for rounding.
+  /// The first stretch begins at 0, the last ends at `length` (the axis's); each takes 1 mm more for rounding.
   [[nodiscard]] std::vector<double> distances(double mileage, double length) const;
   /// The one of them nearest to `hint`; fails with the stretches' ranges when there is none.
   [[nodiscard]] Expected<double> distance(double mileage, double length, std::optional<double> hint = {}) const;

@@ -9,6 +9,12 @@
 
 namespace versine::design {
 
+/// A place in the map plane, m.
+struct MapPosition {
+  double easting = 0.0;
+  double northing = 0.0;
+};
+
 /// A place in the map plane with a direction.
 struct MapPose {
   double easting = 0.0;   ///< m
@@ -49,19 +55,21 @@ struct HorizontalElement {
 /// The axis in the map plane: elements end to end, evaluated at the distance along it. Immutable.
 class HorizontalAxis {
  public:
+  /// Empty, to be assigned to; every other member REQUIRES an element.
+  HorizontalAxis() = default;
   /// An element and the place where it starts.
   struct Placed {
     HorizontalElement element;
     MapPose start;
     double distance = 0.0;  ///< of its start along the axis, m
+    double scale = 1.0;     ///< map metres per metre of distance: within 1e-4 of 1 where a gap was healed
   };
 
   /// Elements chained from `start`, each beginning where the last one ends, in its direction: no gap, no kink.
   /// Fails when an element has no positive finite length or finite curvature, naming it.
   [[nodiscard]] static Expected<HorizontalAxis> chain(const MapPose& start, std::vector<HorizontalElement> elements);
-  /// Elements at given places (from a file, see audit.hpp, which finds gaps and heals small ones).
-  [[nodiscard]] static Expected<HorizontalAxis> place(const std::vector<HorizontalElement>& elements,
-                                                      const std::vector<MapPose>& starts);
+  /// Elements with their places (from a file; assemble.hpp finds gaps and heals small ones). `distance` is filled in.
+  [[nodiscard]] static Expected<HorizontalAxis> place(std::vector<Placed> elements);
 
   [[nodiscard]] double length() const { return length_; }
   [[nodiscard]] const std::vector<Placed>& elements() const { return elements_; }
@@ -74,7 +82,6 @@ class HorizontalAxis {
   [[nodiscard]] AxisPose end() const;
 
  private:
-  HorizontalAxis() = default;
   std::vector<Placed> elements_;
   double length_ = 0.0;
 };
