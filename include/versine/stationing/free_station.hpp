@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "versine/core/error.hpp"
+#include "versine/core/progress.hpp"
+#include "versine/stationing/control_network.hpp"
+#include "versine/stationing/reduction.hpp"
+#include "versine/stationing/result.hpp"
+
+namespace versine::stationing {
+
+struct FreeStationOptions {
+  bool solve_scale = false;          ///< the scale of the distances is an unknown too
+  std::optional<double> tilt_sigma;  ///< the instrument is levelled this well, rad; none: it lies as the trolley lies
+  double significance = 0.001;       ///< of the test of one target: this share of good targets is lost
+  double power = 0.8;                ///< of the minimum detectable blunder
+  double tolerance = 0.05;           ///< to recognise a point by its coordinates, m
+  double largest_tilt = 0.35;        ///< of the standing axis against the plumb line, rad
+  double wanted_sigma = 1e-3;        ///< of the position, each axis; a worse geometry is called poor, m
+  bool identify = true;              ///< targets without or with unknown numbers are found by their coordinates
+  std::optional<Eigen::Vector3d> near;  ///< roughly where the station is, m-frame; needed when no number is known and
+                                        ///< the network repeats itself
+};
+
+/// Free stationing (resection with full attitude): position and attitude of the instrument from three or more targets
+/// on control points. Stages: numbers to points; start value by consensus; least squares with a robust loss; least
+/// squares with the sigmas of instrument and control points; data snooping (Baarda 1968; for whole targets, Teunissen
+/// 2006 "Testing theory" ch. 4), one target at a time, the worst first, and re-admission of what fits in the end.
+///
+/// The control points' covariance is propagated into the observations, which for one station equals taking the
+/// coordinates as observations.
+///
+/// Fails when fewer than three targets are usable, when they lie on a line, when no three of them agree, and when the
+/// readings show a systematic fault (angles in another unit, a prism constant applied twice, easting and northing
+/// exchanged); the error tells which, with the cure.
+[[nodiscard]] Expected<StationResult> free_station(const ReducedStation& station, const ControlNetwork& network,
+                                                   const Instrument& instrument, const FreeStationOptions& options);
+
+/// A control point that several stations see away from its coordinates in the same direction.
+struct MovedPoint {
+  std::string name;
+  std::vector<std::string> stations;
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< mean of the stations, m-frame, m
+};
+
+/// A station that could not be computed.
+struct FailedStation {
+  std::string name;
+  std::optional<Time> from, to;
+  Error error;
+};
+
+struct StationingRun {
+  std::vector<StationResult> stations;
+  std::vector<FailedStation> failed;
+  std::vector<MovedPoint> moved;
+};
+
+/// All stationings of a survey. Points that two stations or more leave out with agreeing offsets are called moved;
+/// every station that used one of them is computed again without it.
+[[nodiscard]] StationingRun compute_stations(std::span<const Stationing> stationings, const ControlNetwork& network,
+                                             const Instrument& instrument, const FreeStationOptions& options,
+                                             Progress& progress);
+
+/// Where a prism is that the station sees: a trolley's prism observed from beside the track. Covariance with the
+/// station's own, m-frame.
+struct LocatedPoint {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+[[nodiscard]] LocatedPoint locate(const StationResult& station, const Target& target, const Instrument& instrument);
+
+}  // namespace versine::stationing
