@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "versine/network/build.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "build_stages.hpp"
+#include "versine/core/units.hpp"
+
+namespace versine::network {
+
+namespace {
+
+struct Extent {
+  Eigen::Vector2d low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
+  void add(const Eigen::Vector2d& p) {
+    if (!p.allFinite()) return;
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  [[nodiscard]] bool empty() const { return !(low.x() <= high.x()); }
+  [[nodiscard]] Eigen::Vector2d middle() const { return 0.5 * (low + high); }
+};
+
+Extent extent_of(const NetworkSource& source) {
+  Extent extent;
+  for (const auto& track : source.tracks) {
+    for (const auto& p : track.points) extent.add(p);
+  }
+  return extent;
+}
+
+Expected<geodesy::Projection> choose_projection(const NetworkSource& source, const Extent& extent,
+                                                const BuildOptions& options) {
+  const bool geographic = source.crs.empty();
+  geodesy::Geodetic middle{extent.middle().y(), extent.middle().x(), 0.0};
+  if (!geographic) {
+    auto own = geodesy::Projection::create(source.crs);
+    if (!own || options.crs.empty()) return own;
+    middle = own->inverse({extent.middle().x(), extent.middle().y(), 0.0});
+  }
+  if (options.crs.empty()) return geodesy::Projection::transverse_mercator(middle.longitude);
+  if (options.crs == "utm") return geodesy::Projection::utm(middle);
+  return geodesy::Projection::create(options.crs);
+}
+
+/// The file's coordinates cannot be what its CRS says.
+Expected<void> check_units(const NetworkSource& source, const Extent& extent) {
+  const bool degrees = extent.high.cwiseAbs().maxCoeff() <= 360.0 && extent.low.cwiseAbs().maxCoeff() <= 360.0;
+  if (!source.crs.empty() && degrees) {
+    return fail(
+        {.file = source.file,
+         .field = "crs",
+         .found = fmt::format("coordinates from ({:.4f}, {:.4f}) to ({:.4f}, {:.4f}), which look like degrees, with "
+                              "a projected CRS",
+                              extent.low.x(), extent.low.y(), extent.high.x(), extent.high.y()),
+         .expected = "map metres",
+         .advice = "correct the file's CRS, or set network.source_crs = \"EPSG:4326\""});
+  }
+  const double pi = std::numbers::pi;
+  if (source.crs.empty() &&
+      (extent.high.x() > pi || extent.low.x() < -pi || extent.high.y() > 0.5 * pi || extent.low.y() < -0.5 * pi)) {
+    return fail({.file = source.file,
+                 .field = "crs",
+                 .found = fmt::format("coordinates up to ({:.1f}, {:.1f}) without a CRS", extent.high.x() / units::deg,
+                                      extent.high.y() / units::deg),
+                 .expected = "longitude and latitude in degrees, or a CRS",
+                 .advice = "name the map's projection: network.source_crs = \"EPSG:25832\""});
+  }
+  return {};
+}
+
+/// Map metres per ground metre changes by less than 1 ppm over a few kilometres: one value per 5 km cell.
+class ScaleField {
+ public:
+  ScaleField(const geodesy::Projection& projection) : projection_(projection) {}
+  double at(const Eigen::Vector2d& p) {
+    const std::pair cell(std::lround(p.x() / 5000.0), std::lround(p.y() / 5000.0));
+    const auto [it, added] = cells_.try_emplace(cell, 1.0);
+    if (added) {
+      const double scale =
+          projection_.distortion(projection_.inverse({cell.first * 5000.0, cell.second * 5000.0, 0.0})).scale;
+      if (scale > 0.5 && scale < 2.0) it->second = scale;
+    }
+    return it->second;
+  }
+
+ private:
+  const geodesy::Projection& projection_;
+  std::map<std::pair<long, long>, double> cells_;
+};
+
+}  // namespace
+
+Expected<Network> build(const NetworkSource& source, const BuildOptions& options) {
+  const Extent extent = extent_of(source);
+  if (extent.empty()) {
+    return fail({.file = source.file,
+                 .found = fmt::format("{} lines, none with coordinates", source.tracks.size()),
+                 .expected = "railway tracks as lines",
+                 .advice = "name the layer, or the railway types to be read"});
+  }
+  if (auto ok = check_units(source, extent); !ok) return tl::unexpected(ok.error());
+  auto projection = choose_projection(source, extent, options);
+  if (!projection) {
+    Error error = projection.error();
+    if (error.file.empty()) error.file = source.file;
+    return tl::unexpected(error);
+  }
+
+  // Everything into the map, relative to a round origin near the middle, where doubles and eyes are comfortable.
+  std::optional<geodesy::Projection> from;
+  if (!source.crs.empty() && !options.crs.empty()) from = *geodesy::Projection::create(source.crs);
+  const auto to_map = [&](const Eigen::Vector2d& p) -> Eigen::Vector2d {
+    if (!source.crs.empty() && !from) return p;
+    const geodesy::Geodetic g = from ? from->inverse({p.x(), p.y(), 0.0}) : geodesy::Geodetic{p.y(), p.x(), 0.0};
+    const auto m = projection->forward(g);
+    return {m.easting, m.northing};
+  };
+  const Eigen::Vector2d origin = (to_map(extent.middle()) / 1000.0).array().round() * 1000.0;
+  if (!origin.allFinite()) {
+    return fail({.file = source.file,
+                 .field = "crs",
+                 .found = "coordinates outside the projection's area",
+                 .expected = "a projection made for the network's place",
+                 .advice = "set network.crs, or leave it out"});
+  }
+  std::vector<std::vector<Eigen::Vector2d>> points;
+  std::vector<double> scales;
+  ScaleField scale_field(*projection);
+  points.reserve(source.tracks.size());
+  for (const auto& track : source.tracks) {
+    auto& line = points.emplace_back();
+    line.reserve(track.points.size());
+    for (const auto& p : track.points) line.push_back(to_map(p) - origin);
+    const bool usable = !line.empty() && line.front().allFinite();
+    scales.push_back(usable ? scale_field.at(line[line.size() / 2] + origin) : 1.0);
+  }
+
+  Network network{source.file, std::move(*projection), origin, {}, {}, {}, {}, {}};
+  auto lines = detail::project_lines(source, points, scales, network.record);
+  if (lines.lines.empty()) {
+    return fail({.file = source.file,
+                 .found = fmt::format("{} lines, none of them a track", source.tracks.size()),
+                 .expected = "lines of two or more distinct points",
+                 .advice = network.record.warnings.empty() ? "" : network.record.warnings.front()});
+  }
+  detail::find_cuts(source, options, lines, network.record);
+  detail::split_lines(lines, network);
+  const auto labels = detail::labels_of(source, options, lines, network.record);
+  detail::join_ends(source, options, lines, labels, network);
+  detail::find_connections(options, lines, labels, network);
+  return network;
+}
+
+}  // namespace versine::network
