@@ -18,13 +18,18 @@ double Ellipsoid::transverse_radius(double latitude) const {
 }
 
 Eigen::Vector3d Ellipsoid::gravity_ned(double latitude, double height) const {
-  const double s = std::sin(latitude), s2 = s * s;
+  return at(latitude, height).gravity_ned;
+}
+
+LocalEarth Ellipsoid::at(double latitude, double height) const {
+  const double s = std::sin(latitude), c = std::cos(latitude), s2 = s * s;
+  const double w2 = 1.0 - e2() * s2, w = std::sqrt(w2);
   const double k = b() * gamma_p_ / (a_ * gamma_e_) - 1.0;
-  const double surface = gamma_e_ * (1.0 + k * s2) / std::sqrt(1.0 - e2() * s2);
+  const double surface = gamma_e_ * (1.0 + k * s2) / w;
   const double m = omega_ * omega_ * a_ * a_ * b() / gm_;
   const double down = surface * (1.0 - 2.0 / a_ * (1.0 + f_ + m - 2.0 * f_ * s2) * height +
                                  3.0 * height * height / (a_ * a_));
-  return {-8.08e-9 * height * std::sin(2.0 * latitude), 0.0, down};
+  return {s, c, a_ * (1.0 - e2()) / (w2 * w), a_ / w, {-8.08e-9 * height * 2.0 * s * c, 0.0, down}};
 }
 
 Ecef Ellipsoid::to_ecef(const Geodetic& g) const {

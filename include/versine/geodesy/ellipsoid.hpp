@@ -4,6 +4,14 @@
 
 namespace versine::geodesy {
 
+/// What navigation needs of the Earth at one place; from one sine and cosine of the latitude.
+struct LocalEarth {
+  double sin_latitude = 0.0, cos_latitude = 1.0;
+  double meridian_radius = 0.0;    ///< m
+  double transverse_radius = 0.0;  ///< m
+  Eigen::Vector3d gravity_ned = Eigen::Vector3d::Zero();  ///< m/s^2, see Ellipsoid::gravity_ned
+};
+
 /// A rotating reference ellipsoid with its normal gravity field. Immutable; WGS84 and GRS80 are given.
 /// Source of the formulas: Moritz 1980 (Geodetic Reference System 1980); Groves 2013 ch. 2.
 class Ellipsoid {
@@ -28,6 +36,9 @@ class Ellipsoid {
   /// -8.08e-9 /s^2 * h * sin(2 latitude) (Groves eq. 2.140): 0.07 arc-seconds at 420 m.
   /// Valid from -10 km to 20 km; there within 1e-6 m/s^2 of the closed formula in height.
   [[nodiscard]] Eigen::Vector3d gravity_ned(double latitude, double height) const;
+
+  /// Radii and gravity together: what a mechanisation asks for at every sample.
+  [[nodiscard]] LocalEarth at(double latitude, double height) const;
 
   /// Exact.
   [[nodiscard]] Ecef to_ecef(const Geodetic& g) const;
