@@ -24,6 +24,7 @@ struct Command {
 };
 
 /// All commands, in the order of the help. A new command is one file in commands/ and one line in main.cpp.
+void add_alignment(CLI::App& app, int& exit);
 void add_check(CLI::App& app, int& exit);
 void add_init(CLI::App& app, int& exit);
 
