@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "versine/simulation/irregularity.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <unsupported/Eigen/FFT>
+
+namespace versine::simulation {
+namespace {
+
+/// Welch's estimate: mean periodogram of half-overlapping pieces under a Hann window, one-sided, per 1/m.
+std::vector<double> welch(const std::vector<double>& x, double step, std::size_t n) {
+  Eigen::FFT<double> fft;
+  std::vector<double> window(n), density(n / 2 + 1, 0.0);
+  double power = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    window[i] = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n));
+    power += window[i] * window[i];
+  }
+  std::size_t pieces = 0;
+  std::vector<double> piece(n);
+  std::vector<std::complex<double>> spectrum;
+  for (std::size_t at = 0; at + n <= x.size(); at += n / 2, ++pieces) {
+    for (std::size_t i = 0; i < n; ++i) piece[i] = window[i] * x[at + i];
+    fft.fwd(spectrum, piece);
+    for (std::size_t k = 0; k <= n / 2; ++k) density[k] += 2.0 * step * std::norm(spectrum[k]) / power;
+  }
+  for (double& d : density) d /= static_cast<double>(pieces);
+  return density;
+}
+
+TEST(Synthesize, DensityMatchesTheRequestedSpectrum) {
+  const double step = 0.25;
+  const std::size_t n = 2048;  // 512 m
+  for (const auto& [name, spectrum] : spectrum_names()) {
+    if (spectrum == Spectrum::none) continue;
+    for (const auto kind :
+         {Irregularity::level, Irregularity::alignment, Irregularity::cross_level, Irregularity::gauge}) {
+      const auto x = synthesize(spectrum, kind, step, 400000, 2.0, 150.0, 5);
+      const auto density = welch(x, step, n);
+      const double df = 1.0 / (static_cast<double>(n) * step);
+      // Octave bands within the wavelengths 2.5 m to 100 m.
+      for (double low = 0.01; low < 0.4; low *= 2.0) {
+        double found = 0.0, wanted = 0.0;
+        for (std::size_t k = 1; k < density.size(); ++k) {
+          const double f = static_cast<double>(k) * df;
+          if (f < low || f >= std::min(0.4, 2.0 * low)) continue;
+          found += density[k] * df, wanted += spectral_density(spectrum, kind, f) * df;
+        }
+        EXPECT_NEAR(found / wanted, 1.0, 0.15) << name << " " << static_cast<int>(kind) << " from " << low;
+      }
+    }
+  }
+}
+
+TEST(Synthesize, GermanLowHasItsVariance) {
+  // Variance over the band is the integral of the density.
+  const auto x = synthesize(Spectrum::german_low, Irregularity::level, 0.2, 500000, 3.0, 25.0, 11);
+  double variance = 0.0, wanted = 0.0;
+  for (const double v : x) variance += v * v / static_cast<double>(x.size());
+  for (double f = 0.04; f < 1.0 / 3.0; f += 1e-4) {
+    wanted += 1e-4 * spectral_density(Spectrum::german_low, Irregularity::level, f + 5e-5);
+  }
+  EXPECT_NEAR(variance / wanted, 1.0, 0.03);
+}
+
+TEST(Spectra, PiecesOfTheChineseSpectrumJoin) {
+  for (const auto kind :
+       {Irregularity::level, Irregularity::alignment, Irregularity::cross_level, Irregularity::gauge}) {
+    double before = spectral_density(Spectrum::china_ballastless, kind, 0.005);
+    for (double f = 0.005 * 1.001; f < 1.0; f *= 1.001) {
+      const double here = spectral_density(Spectrum::china_ballastless, kind, f);
+      EXPECT_NEAR(here / before, 1.0, 0.02) << f;
+      before = here;
+    }
+  }
+}
+
+TEST(Defects, HaveTheirAmplitudeAndPlace) {
+  const Defect dip{Defect::Kind::dip, Defect::Rail::left, 100.0, 0.008, 6.0, 0.0};
+  EXPECT_NEAR(deviation_of(dip, 100.0).level, -0.004, 1e-15);        // half on the axis ...
+  EXPECT_NEAR(deviation_of(dip, 100.0).cross_level, -0.008, 1e-15);  // ... all of it between the rails
+  EXPECT_EQ(deviation_of(dip, 103.1).level, 0.0);
+  EXPECT_NEAR(deviation_of({Defect::Kind::kink, Defect::Rail::both, 10.0, 0.02, 40.0, 0.0}, 10.0).alignment, 0.02,
+              1e-15);
+  EXPECT_NEAR(deviation_of({Defect::Kind::wave, Defect::Rail::both, 10.0, 0.01, 4.0, 20.0}, 11.0).level, 0.01, 1e-15);
+  EXPECT_NEAR(deviation_of({Defect::Kind::twist, Defect::Rail::both, 10.0, 0.009, 3.0, 0.0}, 10.0).cross_level, 0.009,
+              1e-15);
+}
+
+}  // namespace
+}  // namespace versine::simulation
