@@ -52,6 +52,7 @@ struct Atmosphere {
 /// One set-up of the instrument with all that was read there.
 struct Stationing {
   std::string name;
+  std::string mark;                      ///< number of the point it stands over; empty: none, as on a trolley
   double instrument_height = 0.0;        ///< of the instrument's centre above the station's mark, m; 0 on a trolley
   std::optional<Atmosphere> atmosphere;  ///< none: the instrument has corrected the distances itself
   std::optional<Time> from, to;          ///< when the trolley stood, in the recording's time

@@ -41,6 +41,7 @@ struct Target {
 /// A station's readings after reduction of faces and sets.
 struct ReducedStation {
   std::string name;
+  std::string mark;  ///< number of the point it stands over; empty: none
   double instrument_height = 0.0;
   std::optional<Time> from, to;
   std::vector<Target> targets;        ///< in the order in which the points first occur
