@@ -69,7 +69,7 @@ struct ModelNoise {
 [[nodiscard]] filter::LinearObservation<vertical::size, 1> observe_down(double z, double variance);
 [[nodiscard]] filter::LinearObservation<level::size, 2> observe_level(const Eigen::Vector2d& z,
                                                                       const Eigen::Matrix2d& covariance);
-/// Roll as reckoned minus roll from the accelerometers while standing.
+/// Roll from the accelerometers while standing minus roll as reckoned (phi turns the estimate into the truth).
 [[nodiscard]] filter::LinearObservation<roll::size, 1> observe_roll(double z, double variance);
 
 }  // namespace versine::fusion::landmark
