@@ -8,7 +8,9 @@ namespace versine::fusion::landmark {
 
 namespace {
 
-constexpr double square(double x) { return x * x; }
+constexpr double square(double x) {
+  return x * x;
+}
 
 /// Residuals of landmarks whose redundancy is below this say more about rounding than about the landmark.
 constexpr double least_redundancy = 1e-3;

@@ -39,10 +39,10 @@ StaticStart from_given(const GivenAttitude& given, const geodesy::Geodetic& plac
   start.pitch_sigma = given.level_sigma;
   start.roll_sigma = given.level_sigma;
   start.heading_sigma = given.heading_sigma;
-  start.bias_sigma = o.bias_sigma.value_or(
-      equivalent_bias(std::hypot(o.gyro.bias, o.gyro.bias_instability), given.level_sigma, given.heading_sigma,
-                      place.latitude, given.attitude.yaw)
-          .lateral);
+  start.bias_sigma =
+      o.bias_sigma.value_or(equivalent_bias(std::hypot(o.gyro.bias, o.gyro.bias_instability), given.level_sigma,
+                                            given.heading_sigma, place.latitude, given.attitude.yaw)
+                                .lateral);
   return start;
 }
 
@@ -56,12 +56,13 @@ Expected<StaticStart> static_start(const sensors::ImuSeries& imu, const Series<s
                              imu.front().time + Duration::from_seconds(options.alignment_duration));
   const double duration = (last - imu.front().time).seconds();
   if (!(duration >= shortest_standstill)) {
-    return fail({.field = "static alignment",
-                 .found = fmt::format("{:.0f} s from the first IMU sample until the odometer moves",
-                                      std::max(0.0, (moved - imu.front().time).seconds())),
-                 .expected = fmt::format("a standing start of at least {:.0f} s, better 15 minutes", shortest_standstill),
-                 .advice = "let the trolley stand at the start, or give the attitude in the job "
-                           "(initial attitude with its sigma)"});
+    return fail(
+        {.field = "static alignment",
+         .found = fmt::format("{:.0f} s from the first IMU sample until the odometer moves",
+                              std::max(0.0, (moved - imu.front().time).seconds())),
+         .expected = fmt::format("a standing start of at least {:.0f} s, better 15 minutes", shortest_standstill),
+         .advice = "let the trolley stand at the start, or give the attitude in the job "
+                   "(initial attitude with its sigma)"});
   }
   Eigen::Vector3d dtheta = Eigen::Vector3d::Zero(), dvel = Eigen::Vector3d::Zero();
   std::size_t n = 1;

@@ -14,37 +14,48 @@ namespace {
 
 using namespace landmark;
 
-constexpr double position_prior = 10.0;    // m: the landmarks decide
-constexpr double settled_heading = 2e-5;   // rad and 1: what a further round would change by less than 0.01 mm a landmark
+constexpr double position_prior = 10.0;  // m: the landmarks decide
+constexpr double settled_heading =
+    2e-5;  // rad and 1: what a further round would change by less than 0.01 mm a landmark
 constexpr int most_rounds = 6;
 
 Expected<void> check(const LandmarkInput& in, const LandmarkOptions& o) {
   if (in.imu == nullptr || in.imu->size() < 2) {
-    return fail({.field = "imu", .found = "no samples", .expected = "gyro increments over the whole run",
+    return fail({.field = "imu",
+                 .found = "no samples",
+                 .expected = "gyro increments over the whole run",
                  .advice = "name the IMU's file in the job"});
   }
   if (in.odometer == nullptr || in.odometer->size() < 2) {
-    return fail({.field = "odometer", .found = "no odometer", .expected = "distances over the whole run",
-                 .advice = "landmark dead reckoning needs an odometer: name its file in the job, or use the aided INS"});
+    return fail(
+        {.field = "odometer",
+         .found = "no odometer",
+         .expected = "distances over the whole run",
+         .advice = "landmark dead reckoning needs an odometer: name its file in the job, or use the aided INS"});
   }
   if (in.landmarks == nullptr || in.landmarks->size() < 2) {
-    return fail({.field = "landmarks",
-                 .found = fmt::format("{} landmarks", in.landmarks == nullptr ? 0 : in.landmarks->size()),
-                 .expected = "at least two positions at which the trolley stood",
-                 .advice = "one at each end of the line fixes position, heading and odometer scale; better every 60 m"});
+    return fail(
+        {.field = "landmarks",
+         .found = fmt::format("{} landmarks", in.landmarks == nullptr ? 0 : in.landmarks->size()),
+         .expected = "at least two positions at which the trolley stood",
+         .advice = "one at each end of the line fixes position, heading and odometer scale; better every 60 m"});
   }
-  const double positive[] = {o.gyro.random_walk, o.pitch_sigma, o.levelling_sigma, o.scale_sigma, o.node_interval, o.gate};
+  const double positive[] = {o.gyro.random_walk, o.pitch_sigma,   o.levelling_sigma,
+                             o.scale_sigma,      o.node_interval, o.gate};
   for (const double x : positive) {
     if (!(x > 0.0)) {
-      return fail({.field = "landmark options", .found = "a standard deviation or interval that is not positive",
+      return fail({.field = "landmark options",
+                   .found = "a standard deviation or interval that is not positive",
                    .expected = "gyro random walk, pitch, levelling, scale, node interval and gate above zero",
                    .advice = "choose a gyro grade, or give each value"});
     }
   }
   for (const auto& l : *in.landmarks) {
     if (!(l.covariance.diagonal().minCoeff() > 0.0)) {
-      return fail({.field = "landmarks", .found = fmt::format("landmark '{}' with a sigma that is not positive", l.name),
-                   .expected = "a sigma above zero in each direction", .advice = "give the instrument's, such as 0.6 mm"});
+      return fail({.field = "landmarks",
+                   .found = fmt::format("landmark '{}' with a sigma that is not positive", l.name),
+                   .expected = "a sigma above zero in each direction",
+                   .advice = "give the instrument's, such as 0.6 mm"});
     }
   }
   return {};
@@ -75,7 +86,8 @@ Expected<std::vector<std::size_t>> usable_landmarks(const LandmarkInput& in, con
     const Duration half = Duration::from_seconds(0.5);
     const Time from = l.from < l.to ? l.from : l.time - half, to = l.from < l.to ? l.to : l.time + half;
     const double moved = std::abs(distance_at(*in.odometer, to) - distance_at(*in.odometer, from));
-    const double since = l.time < start ? std::abs(distance_at(*in.odometer, start) - distance_at(*in.odometer, l.time)) : 0.0;
+    const double since =
+        l.time < start ? std::abs(distance_at(*in.odometer, start) - distance_at(*in.odometer, l.time)) : 0.0;
     if (std::max(moved, since) <= o.standing_tolerance) {
       usable.push_back(i);
       continue;
@@ -85,8 +97,9 @@ Expected<std::vector<std::size_t>> usable_landmarks(const LandmarkInput& in, con
               .found = fmt::format("landmark '{}' at {:.3f} s while the odometer moved {:.1f} mm", l.name,
                                    l.time.seconds(), std::max(moved, since) / units::mm),
               .expected = fmt::format("a trolley that stands to {:.1f} mm", o.standing_tolerance / units::mm),
-              .advice = "check the clocks of odometer and total station against each other and the landmark's from and "
-                        "to; or leave out landmarks taken in motion (skip_moving_landmarks = true)"};
+              .advice =
+                  "check the clocks of odometer and total station against each other and the landmark's from and "
+                  "to; or leave out landmarks taken in motion (skip_moving_landmarks = true)"};
     if (!o.skip_moving_landmarks) return fail(moving);
   }
   if (usable.size() < 2) {
@@ -158,8 +171,11 @@ Placement place(Reckoning& r, const LandmarkInput& in, const std::vector<std::si
                 const Prior& prior, const DrivingNoise& noise, const LandmarkOptions& o) {
   std::vector<std::size_t> at(usable.size());
   for (std::size_t i = 0; i < usable.size(); ++i) at[i] = node_at(r.nodes, (*in.landmarks)[usable[i]].time);
-  ModelErrors errors{.mounting = o.mounting_sigma, .level = start.roll_sigma, .heading = start.heading_sigma,
-                     .gyro_scale = o.gyro.scale_factor, .gyro_misalignment = o.gyro.misalignment,
+  ModelErrors errors{.mounting = o.mounting_sigma,
+                     .level = start.roll_sigma,
+                     .heading = start.heading_sigma,
+                     .gyro_scale = o.gyro.scale_factor,
+                     .gyro_misalignment = o.gyro.misalignment,
                      .bias = std::hypot(o.gyro.bias_instability, start.bias_sigma),
                      .latitude = (*in.landmarks)[0].position.latitude};
   Placement p;
@@ -169,12 +185,13 @@ Placement place(Reckoning& r, const LandmarkInput& in, const std::vector<std::si
   for (int round = 0; round < most_rounds; ++round) {
     const auto& l = (*in.landmarks)[usable[anchor]];
     const Eigen::Vector3d to_odometer = -lever_n(r.nodes[at[anchor]], p.heading, pitch[anchor], o);
-    place_nodes(r.nodes, p.heading, p.scale, at[anchor], geodesy::wgs84.displaced(l.position, to_odometer + anchor_shift));
+    place_nodes(r.nodes, p.heading, p.scale, at[anchor],
+                geodesy::wgs84.displaced(l.position, to_odometer + anchor_shift));
     p.ties.clear();
     for (std::size_t i = 0; i < usable.size(); ++i) {
       const Node& node = r.nodes[at[i]];
-      p.ties.push_back(make_tie((*in.landmarks)[usable[i]], usable[i], at[i], node, lever_n(node, p.heading, pitch[i], o),
-                                p.heading, o));
+      p.ties.push_back(make_tie((*in.landmarks)[usable[i]], usable[i], at[i], node,
+                                lever_n(node, p.heading, pitch[i], o), p.heading, o));
     }
     p.stretches = judge_stretches(r.nodes, at, errors);
     p.channels = build_channels(r.nodes, p.stretches, prior, noise);
@@ -194,7 +211,8 @@ Placement place(Reckoning& r, const LandmarkInput& in, const std::vector<std::si
   return p;
 }
 
-Expected<void> report_landmarks(const LandmarkInput& in, const Placement& p, const LandmarkOptions& o, RunRecord& record) {
+Expected<void> report_landmarks(const LandmarkInput& in, const Placement& p, const LandmarkOptions& o,
+                                RunRecord& record) {
   std::size_t used = 0, unchecked = 0;
   for (std::size_t i = 0; i < p.ties.size(); ++i) {
     const auto& l = (*in.landmarks)[p.ties[i].landmark];
@@ -203,18 +221,25 @@ Expected<void> report_landmarks(const LandmarkInput& in, const Placement& p, con
       unchecked += p.fits[i].redundancy < 0.01 ? 1 : 0;
       continue;
     }
-    record.rejections.push_back({.sensor = "landmark", .time = l.time, .reason = "contradicts the others",
-                                 .normalized = p.fits[i].worst(), .threshold = o.gate});
+    record.rejections.push_back({.sensor = "landmark",
+                                 .time = l.time,
+                                 .reason = "contradicts the others",
+                                 .normalized = p.fits[i].worst(),
+                                 .threshold = o.gate});
   }
   if (used < 2 || 2 * used < p.ties.size()) {
-    return fail({.field = "landmarks", .found = fmt::format("{} of {} landmarks that fit each other", used, p.ties.size()),
+    return fail({.field = "landmarks",
+                 .found = fmt::format("{} of {} landmarks that fit each other", used, p.ties.size()),
                  .expected = "most of them, within the sigmas given",
-                 .advice = "check coordinate system, height datum, units and lever arm of the landmarks, the odometer's "
-                           "scale, and whether their sigma is as small as stated"});
+                 .advice =
+                     "check coordinate system, height datum, units and lever arm of the landmarks, the odometer's "
+                     "scale, and whether their sigma is as small as stated"});
   }
   if (unchecked > 0) {
-    record.warnings.push_back(fmt::format("{} of {} landmarks are checked by nothing else: an error in one goes into "
-                                          "the result in full. One more landmark would check them.", unchecked, used));
+    record.warnings.push_back(
+        fmt::format("{} of {} landmarks are checked by nothing else: an error in one goes into "
+                    "the result in full. One more landmark would check them.",
+                    unchecked, used));
   }
   return {};
 }
@@ -255,20 +280,26 @@ Expected<LandmarkSolution> run_landmark_dead_reckoning(const LandmarkInput& inpu
   auto reckoning = reckon(*input.imu, *input.odometer, *start, place_at, stops, options, progress);
   if (!reckoning) return tl::unexpected(reckoning.error());
 
-  const Prior prior{.position = position_prior, .scale = options.scale_sigma, .pitch = start->pitch_sigma,
-                    .heading = start->heading_sigma, .bias = start->bias_sigma, .roll = start->roll_sigma};
+  const Prior prior{.position = position_prior,
+                    .scale = options.scale_sigma,
+                    .pitch = start->pitch_sigma,
+                    .heading = start->heading_sigma,
+                    .bias = start->bias_sigma,
+                    .roll = start->roll_sigma};
   const auto& gyro = options.gyro;
-  const DrivingNoise noise{.random_walk = gyro.random_walk,
-                           .bias_walk = std::hypot(gyro.bias_instability * std::sqrt(2.0 / gyro.correlation_time),
-                                                   gyro.rate_random_walk),
-                           .scale_walk = options.scale_walk, .path_walk = options.path_walk,
-                           .distance_walk = options.distance_walk};
+  const DrivingNoise noise{
+      .random_walk = gyro.random_walk,
+      .bias_walk = std::hypot(gyro.bias_instability * std::sqrt(2.0 / gyro.correlation_time), gyro.rate_random_walk),
+      .scale_walk = options.scale_walk,
+      .path_walk = options.path_walk,
+      .distance_walk = options.distance_walk};
   progress.report("landmarks", 0.0);
   const Placement placed = place(*reckoning, input, *usable, *start, prior, noise, options);
   if (auto ok = report_landmarks(input, placed, options, record); !ok) return tl::unexpected(ok.error());
   std::vector<RollTie> rolls;
   for (const Tie& tie : placed.ties) {
-    const auto more = roll_ties(*input.imu, (*input.landmarks)[tie.landmark], reckoning->nodes[tie.node], tie.node, options);
+    const auto more =
+        roll_ties(*input.imu, (*input.landmarks)[tie.landmark], reckoning->nodes[tie.node], tie.node, options);
     if (tie.node > 0) rolls.insert(rolls.end(), more.begin(), more.end());
   }
   progress.report("smoothing", 0.0);
@@ -283,12 +314,13 @@ Expected<LandmarkSolution> run_landmark_dead_reckoning(const LandmarkInput& inpu
     const auto& l = (*input.landmarks)[placed.ties[i].landmark];
     const auto& v = smoothed.vertical[placed.ties[i].node].estimate.mean;
     const auto& h = smoothed.level[placed.ties[i].node].estimate.mean;
-    result.landmarks.push_back({l.name, l.time,
-                                placed.ties[i].misclosure - Eigen::Vector3d(h(level::north), h(level::east), v(vertical::position)),
-                                placed.fits[i]});
+    result.landmarks.push_back(
+        {l.name, l.time,
+         placed.ties[i].misclosure - Eigen::Vector3d(h(level::north), h(level::east), v(vertical::position)),
+         placed.fits[i]});
     const auto& in = smoothed.innovations[i];
-    result.solution.innovations.push_back({l.time, "landmark", in.value.cast<float>(), in.sigma.cast<float>(), in.nis,
-                                           placed.fits[i].used});
+    result.solution.innovations.push_back(
+        {l.time, "landmark", in.value.cast<float>(), in.sigma.cast<float>(), in.nis, placed.fits[i].used});
   }
   Solution& solution = result.solution;
   solution.error_names = sensor_error_names();

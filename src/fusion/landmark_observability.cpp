@@ -25,11 +25,13 @@ RankCondition judge(const Eigen::MatrixXd& matrix) {
   RankCondition r;
   for (Eigen::Index i = 0; i < s.size(); ++i) r.rank += s(i) > 1e-10 * s(0) ? 1 : 0;
   r.condition = s(s.size() - 1) > 0.0 && s.size() == matrix.cols() ? s(0) / s(s.size() - 1)
-                                                                    : std::numeric_limits<double>::infinity();
+                                                                   : std::numeric_limits<double>::infinity();
   return r;
 }
 
-Eigen::VectorXd vertical_prior(const Prior& p) { return Eigen::Vector3d(p.position, p.pitch, p.bias); }
+Eigen::VectorXd vertical_prior(const Prior& p) {
+  return Eigen::Vector3d(p.position, p.pitch, p.bias);
+}
 Eigen::VectorXd level_prior(const Prior& p) {
   Eigen::VectorXd d(level::size);
   d << p.position, p.position, p.scale, p.heading, p.bias;
@@ -50,7 +52,8 @@ Eigen::MatrixXd stacked(std::span<const Step> steps, std::span<const Tie> ties, 
     const auto at = rows.rows();
     rows.conservativeResize(at + observed, n);
     for (int j = 0; j < observed; ++j) {
-      rows.row(at + j) = Phi.row(j).cwiseProduct(prior.transpose()) / std::sqrt(ties[i].covariance(first + j, first + j));
+      rows.row(at + j) =
+          Phi.row(j).cwiseProduct(prior.transpose()) / std::sqrt(ties[i].covariance(first + j, first + j));
     }
   }
   return rows;
@@ -81,9 +84,10 @@ void add_states(Observability& o, const Prior& prior, const Smoothed& s) {
   for (const auto& row : rows) {
     o.states.push_back({row.name, row.before, row.after, row.before / row.after});
     if (row.before < 2.0 * row.after) {
-      o.verdict.push_back(fmt::format("{}: weak; {} before the run, {} at worst in it. The landmarks say little about "
-                                      "it; its value rests on what was given.",
-                                      row.name, quantity(row.before, row.unit), quantity(row.after, row.unit)));
+      o.verdict.push_back(
+          fmt::format("{}: weak; {} before the run, {} at worst in it. The landmarks say little about "
+                      "it; its value rests on what was given.",
+                      row.name, quantity(row.before, row.unit), quantity(row.after, row.unit)));
     }
   }
 }
@@ -165,8 +169,9 @@ Observability observability_of(std::span<const Node> nodes, const Channels& chan
   if (used == 0 || !(moving > 0.0)) return {};
   landmark_sigma /= static_cast<double>(used);
   const double heading = geodesy::to_euler(nodes.front().q_nv).yaw;
-  Observability o = observability_at(distance / moving, heading, moving / static_cast<double>(std::max<std::size_t>(used, 2) - 1),
-                                     prior, landmark_sigma);
+  Observability o =
+      observability_at(distance / moving, heading, moving / static_cast<double>(std::max<std::size_t>(used, 2) - 1),
+                       prior, landmark_sigma);
   const auto v = judge(stacked<VerticalStep>(channels.vertical, ties, fits, 1, vertical_prior(prior), 2));
   const auto l = judge(stacked<LevelStep>(channels.level, ties, fits, 2, level_prior(prior), 0));
   o.run_vertical_rank = v.rank;
@@ -174,10 +179,11 @@ Observability observability_of(std::span<const Node> nodes, const Channels& chan
   o.run_level_rank = l.rank;
   o.run_level_condition = l.condition;
   if (o.run_vertical_rank < vertical::size || o.run_level_rank < level::size) {
-    o.verdict.push_back(fmt::format("{} landmarks determine {} of {} vertical and {} of {} level states by themselves; "
-                                    "the rest comes from what was given at the start. A third landmark would determine "
-                                    "the gyro biases too.",
-                                    used, o.run_vertical_rank, vertical::size, o.run_level_rank, level::size));
+    o.verdict.push_back(
+        fmt::format("{} landmarks determine {} of {} vertical and {} of {} level states by themselves; "
+                    "the rest comes from what was given at the start. A third landmark would determine "
+                    "the gyro biases too.",
+                    used, o.run_vertical_rank, vertical::size, o.run_level_rank, level::size));
   }
   add_states(o, prior, smoothed);
   add_weakest_place(o, nodes, ties, fits, smoothed);

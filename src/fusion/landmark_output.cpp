@@ -19,8 +19,8 @@ using ChainMatrix = Eigen::Matrix<double, chain_size, chain_size>;
 
 /// Everything that is interpolated between two nodes, as one array of floats and one of doubles.
 struct NodeOutput {
-  Eigen::Array<double, 8, 1> correction;    ///< position error n (3), attitude correction quaternion w x y z (4), speed
-  Eigen::Array<float, 18, 1> covariance;    ///< position, velocity, attitude as Covariance3
+  Eigen::Array<double, 8, 1> correction;  ///< position error n (3), attitude correction quaternion w x y z (4), speed
+  Eigen::Array<float, 18, 1> covariance;  ///< position, velocity, attitude as Covariance3
 };
 
 /// Rotates roll and pitch errors, given about the trolley's axes, into the n-frame (Jiang eq. 4).
@@ -31,7 +31,9 @@ Eigen::Matrix2d to_north_east(double heading) {
   return R;
 }
 
-double node_heading(const Node& node, double heading) { return geodesy::to_euler(node.q_nv).yaw + heading; }
+double node_heading(const Node& node, double heading) {
+  return geodesy::to_euler(node.q_nv).yaw + heading;
+}
 
 void pack(Eigen::Array<float, 18, 1>& to, int at, const Eigen::Matrix3d& m) {
   to.segment<6>(at) << float(m(0, 0)), float(m(1, 1)), float(m(2, 2)), float(m(0, 1)), float(m(0, 2)), float(m(1, 2));
@@ -47,9 +49,8 @@ NodeOutput node_output(const Node& node, const Smoothed& s, std::size_t k, doubl
   const double psi = node_heading(node, heading);
   const Eigen::Matrix2d R = to_north_east(psi);
   const Eigen::Vector2d tilt = R * Eigen::Vector2d(r.mean(roll::angle), v.mean(vertical::pitch));
-  const Eigen::Quaterniond q =
-      geodesy::from_rotation_vector({tilt.x(), tilt.y(), l.mean(level::heading)}) *
-      Eigen::Quaterniond(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()));
+  const Eigen::Quaterniond q = geodesy::from_rotation_vector({tilt.x(), tilt.y(), l.mean(level::heading)}) *
+                               Eigen::Quaterniond(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()));
   NodeOutput o;
   o.correction << l.mean(level::north), l.mean(level::east), v.mean(vertical::position), q.w(), q.x(), q.y(), q.z(),
       speed * (1.0 - scale) * (1.0 - l.mean(level::scale));
@@ -66,9 +67,9 @@ NodeOutput node_output(const Node& node, const Smoothed& s, std::size_t k, doubl
   // Velocity: turned by the attitude error, stretched by the scale's.
   const Eigen::Vector2d along(std::cos(psi), std::sin(psi)), aside(-along.y(), along.x());
   Eigen::Matrix3d V = Eigen::Matrix3d::Zero();
-  V.topLeftCorner<2, 2>() =
-      (speed * speed * l.covariance(level::scale, level::scale) + speed_sigma * speed_sigma) * along * along.transpose() +
-      speed * speed * A(2, 2) * aside * aside.transpose();
+  V.topLeftCorner<2, 2>() = (speed * speed * l.covariance(level::scale, level::scale) + speed_sigma * speed_sigma) *
+                                along * along.transpose() +
+                            speed * speed * A(2, 2) * aside * aside.transpose();
   V(2, 2) = speed * speed * tilt_variance.y();
   pack(o.covariance, 6, V);
   pack(o.covariance, 12, A);
@@ -134,7 +135,8 @@ geodesy::Trajectory corrected_trajectory(Reckoning reckoning, const Smoothed& sm
     const NodeOutput b = k == 0 ? a : node_output(nodes[k], smoothed, k, heading, scale, node_speed(nodes, k));
     const geodesy::Geodetic& from = nodes[base].position;
     const double north = 1.0 / (geodesy::wgs84.meridian_radius(from.latitude) + from.height);
-    const double east = 1.0 / ((geodesy::wgs84.transverse_radius(from.latitude) + from.height) * std::cos(from.latitude));
+    const double east =
+        1.0 / ((geodesy::wgs84.transverse_radius(from.latitude) + from.height) * std::cos(from.latitude));
     const double per_ns = k == 0 ? 0.0 : 1.0 / static_cast<double>((nodes[k].time - nodes[base].time).ns);
     const Eigen::Array<double, 8, 1> slope = b.correction - a.correction;
     const Eigen::Array<float, 18, 1> covariance_slope = b.covariance - a.covariance;
@@ -172,10 +174,9 @@ filter::ErrorChain error_chain(std::span<const Node> nodes, const Smoothed& s, d
   for (std::size_t i = 0; i < picked.size(); ++i) {
     const std::size_t k = picked[i];
     const ChainMatrix T = chain_frame(node_heading(nodes[k], heading));
-    const ChainMatrix P = T *
-                          blocks(s.vertical[k].estimate.covariance, s.level[k].estimate.covariance,
-                                 s.roll[k].estimate.covariance) *
-                          T.transpose();
+    const ChainMatrix P =
+        T * blocks(s.vertical[k].estimate.covariance, s.level[k].estimate.covariance, s.roll[k].estimate.covariance) *
+        T.transpose();
     Eigen::MatrixXf gain;
     if (i + 1 < picked.size()) {
       auto v = s.vertical[k].gain;

@@ -60,16 +60,19 @@ Eigen::Vector3d earth_rate(double latitude) {
 }
 
 Error gap_error(const sensors::ImuSample& before, double seconds, double metres) {
-  return {.field = "imu",
-          .found = fmt::format("a gap of {:.3f} s after {:.3f} s, in which the trolley moved {:.3f} m", seconds,
-                               before.time.seconds(), metres),
-          .expected = "gyro data without gaps while moving: the attitude cannot be carried over one",
-          .advice = "survey the parts before and after the gap as separate runs, or use the aided INS, which re-aligns"};
+  return {
+      .field = "imu",
+      .found = fmt::format("a gap of {:.3f} s after {:.3f} s, in which the trolley moved {:.3f} m", seconds,
+                           before.time.seconds(), metres),
+      .expected = "gyro data without gaps while moving: the attitude cannot be carried over one",
+      .advice = "survey the parts before and after the gap as separate runs, or use the aided INS, which re-aligns"};
 }
 
 Error not_a_number(Time t) {
-  return {.field = "imu or odometer", .found = fmt::format("a value that is not a number before {:.3f} s", t.seconds()),
-          .expected = "finite increments", .advice = "run the integrity checks on the recording first"};
+  return {.field = "imu or odometer",
+          .found = fmt::format("a value that is not a number before {:.3f} s", t.seconds()),
+          .expected = "finite increments",
+          .advice = "run the integrity checks on the recording first"};
 }
 
 }  // namespace
@@ -88,7 +91,7 @@ Expected<Reckoning> reckon(const sensors::ImuSeries& imu, const Series<sensors::
 
   Reckoning result;
   result.points.resize(n - start.sample);
-  result.moved.resize(n - start.sample);
+  result.moved.resize(n - start.sample, Eigen::Vector3f::Zero());
   Eigen::Quaterniond q = start.q_nb * q_vb.conjugate();
   DistanceAt distance_at(odometer);
   double s = distance_at(imu[start.sample].time);
@@ -157,7 +160,9 @@ Expected<Reckoning> reckon(const sensors::ImuSeries& imu, const Series<sensors::
 void place_nodes(std::vector<Node>& nodes, double heading, double scale, std::size_t anchor,
                  const geodesy::Geodetic& position) {
   const double c = std::cos(heading) * (1.0 - scale), s = std::sin(heading) * (1.0 - scale);
-  const auto turned = [&](const Eigen::Vector2d& d) { return Eigen::Vector2d(c * d.x() - s * d.y(), s * d.x() + c * d.y()); };
+  const auto turned = [&](const Eigen::Vector2d& d) {
+    return Eigen::Vector2d(c * d.x() - s * d.y(), s * d.x() + c * d.y());
+  };
   for (auto& node : nodes) {
     node.motion = {node.duration, node.distance * (1.0 - scale), node.distance_moment * (1.0 - scale),
                    turned(node.moved.head<2>()), turned(node.moment)};

@@ -69,7 +69,9 @@ void judge(Stretch& s, const ModelErrors& e) {
   s.noise = {pitch / root, heading / root, lateral_bias / root, vertical_bias / root};
   // Between two landmarks a slope that changes by a over the length L bows by a L / 8 at mid-interval; a rate that
   // changes evenly by w bows by 0.064 w L T (cubic parabola against its chord).
-  const auto bow = [&](double a, double w) { return std::hypot(a * s.length / 8.0, 0.064 * w * s.length * s.duration); };
+  const auto bow = [&](double a, double w) {
+    return std::hypot(a * s.length / 8.0, 0.064 * w * s.length * s.duration);
+  };
   s.model_error = std::max(bow(pitch, lateral_bias), bow(heading, vertical_bias));
 }
 

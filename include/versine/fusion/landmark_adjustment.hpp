@@ -14,9 +14,9 @@ namespace versine::fusion::landmark {
 /// A landmark as the channels see it: at which node, how far the nominal path misses it, how well it is known.
 struct Tie {
   std::size_t node = 0;
-  std::size_t landmark = 0;                                ///< index in the input
-  Eigen::Vector3d misclosure = Eigen::Vector3d::Zero();    ///< estimate minus landmark, n-frame, m
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();    ///< m^2
+  std::size_t landmark = 0;                              ///< index in the input
+  Eigen::Vector3d misclosure = Eigen::Vector3d::Zero();  ///< estimate minus landmark, n-frame, m
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< m^2
 };
 /// Roll from the accelerometers while standing, minus roll as reckoned.
 struct RollTie {

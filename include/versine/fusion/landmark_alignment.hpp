@@ -11,12 +11,12 @@ namespace versine::fusion::landmark {
 
 /// Attitude at the start of dead reckoning, and the rate that the standing gyros show beyond the Earth's.
 struct StaticStart {
-  std::size_t sample = 0;            ///< dead reckoning begins with this sample's attitude
+  std::size_t sample = 0;  ///< dead reckoning begins with this sample's attitude
   Eigen::Quaterniond q_nb = Eigen::Quaterniond::Identity();
   Eigen::Vector3d rate_bias = Eigen::Vector3d::Zero();  ///< b-frame, rad/s: with it the standing attitude holds still
-  double duration = 0.0;             ///< s used; 0: attitude given
+  double duration = 0.0;                                ///< s used; 0: attitude given
   double pitch_sigma = 0.0, roll_sigma = 0.0, heading_sigma = 0.0;  ///< rad
-  double bias_sigma = 0.0;           ///< rad/s, equivalent gyro bias that remains
+  double bias_sigma = 0.0;                                          ///< rad/s, equivalent gyro bias that remains
 };
 
 /// Levels by the mean specific force and finds north by the mean angular rate (Groves 2013 section 5.6) while the

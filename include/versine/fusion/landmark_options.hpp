@@ -20,23 +20,23 @@ enum class LandmarkSmoother { rts, two_filter };
 
 /// Settings of landmark dead reckoning. SI and radians; standard deviations are one sigma.
 struct LandmarkOptions {
-  sensors::TriadErrors gyro;             ///< of the IMU's grade
-  double alignment_duration = 900.0;     ///< s of the standing start used to align; less when it moves off earlier
-  std::optional<double> heading;         ///< rad; instead of gyrocompassing
-  double heading_sigma = 1.0 * units::deg;      ///< rad, of `heading`
-  std::optional<GivenAttitude> attitude;        ///< at the first sample; then no standing start is needed
-  double pitch_sigma = 0.005 * units::deg;      ///< rad, equivalent pitch at the start (level and mounting)
+  sensors::TriadErrors gyro;                ///< of the IMU's grade
+  double alignment_duration = 900.0;        ///< s of the standing start used to align; less when it moves off earlier
+  std::optional<double> heading;            ///< rad; instead of gyrocompassing
+  double heading_sigma = 1.0 * units::deg;  ///< rad, of `heading`
+  std::optional<GivenAttitude> attitude;    ///< at the first sample; then no standing start is needed
+  double pitch_sigma = 0.005 * units::deg;  ///< rad, equivalent pitch at the start (level and mounting)
   double levelling_sigma = 0.003 * units::deg;  ///< rad, constant error of levelling (accelerometer bias over g)
   std::optional<double> bias_sigma;             ///< rad/s, equivalent gyro bias at the start; none: from `gyro`
 
-  double scale_sigma = 0.002;       ///< of the odometer's scale factor at the start
-  double scale_walk = 8e-6;         ///< 1/sqrt(s), its random walk (Jiang eq. 46)
-  double distance_walk = 0.0;       ///< m/sqrt(m), random error of the odometer besides its scale
+  double scale_sigma = 0.002;        ///< of the odometer's scale factor at the start
+  double scale_walk = 8e-6;          ///< 1/sqrt(s), its random walk (Jiang eq. 46)
+  double distance_walk = 0.0;        ///< m/sqrt(m), random error of the odometer besides its scale
   double odometer_resolution = 0.0;  ///< m, one pulse: its rounding joins each landmark along the track
-  double path_walk = 0.0;           ///< m/sqrt(m), wheels against the direction they point in
+  double path_walk = 0.0;            ///< m/sqrt(m), wheels against the direction they point in
 
-  geodesy::Euler mounting;             ///< IMU b in the trolley v: x_v = to_matrix(mounting) x_b
-  double mounting_sigma = 0.2e-3;      ///< rad, each angle, after calibration
+  geodesy::Euler mounting;                                   ///< IMU b in the trolley v: x_v = to_matrix(mounting) x_b
+  double mounting_sigma = 0.2e-3;                            ///< rad, each angle, after calibration
   Eigen::Vector3d lever_odometer = Eigen::Vector3d::Zero();  ///< m, v-frame, from the IMU to the point that follows x_v
   Eigen::Vector3d lever_landmark = Eigen::Vector3d::Zero();  ///< m, v-frame, from the IMU to prism or total station
 

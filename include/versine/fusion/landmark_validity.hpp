@@ -12,13 +12,13 @@ namespace versine::fusion::landmark {
 
 /// Standard deviations of what the model leaves out.
 struct ModelErrors {
-  double mounting = 0.0;      ///< rad, each mounting angle
-  double level = 0.0;         ///< rad, roll and pitch
-  double heading = 0.0;       ///< rad, at the alignment
-  double gyro_scale = 0.0;    ///< 1
+  double mounting = 0.0;           ///< rad, each mounting angle
+  double level = 0.0;              ///< rad, roll and pitch
+  double heading = 0.0;            ///< rad, at the alignment
+  double gyro_scale = 0.0;         ///< 1
   double gyro_misalignment = 0.0;  ///< rad
-  double bias = 0.0;          ///< rad/s, of the gyros as left by the alignment
-  double latitude = 0.0;      ///< rad
+  double bias = 0.0;               ///< rad/s, of the gyros as left by the alignment
+  double latitude = 0.0;           ///< rad
 };
 
 /// A stretch between two landmarks, or before the first or after the last.
