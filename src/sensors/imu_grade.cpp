@@ -87,7 +87,9 @@ constexpr std::array grades{
 };
 }  // namespace
 
-std::span<const ImuGrade> imu_grades() { return grades; }
+std::span<const ImuGrade> imu_grades() {
+  return grades;
+}
 
 std::optional<ImuGrade> find_imu_grade(std::string_view name) {
   const auto it = std::find_if(grades.begin(), grades.end(), [&](const ImuGrade& g) { return g.name == name; });
