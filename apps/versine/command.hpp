@@ -27,6 +27,7 @@ struct Command {
 void add_alignment(CLI::App& app, int& exit);
 void add_check(CLI::App& app, int& exit);
 void add_init(CLI::App& app, int& exit);
+void add_simulate(CLI::App& app, int& exit);
 
 /// Options that every job command has.
 struct JobOptions {

@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
   int exit = good;
-  for (const auto add : {add_init, add_check, add_alignment}) add(app, exit);
+  for (const auto add : {add_init, add_check, add_alignment, add_simulate}) add(app, exit);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

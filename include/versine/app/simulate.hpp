@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "versine/app/simulate_config.hpp"
+#include "versine/core/progress.hpp"
+#include "versine/simulation/recording.hpp"
+
+/// `versine simulate`: from a scenario file to a folder with recording, truth, and a survey job that is ready to run.
+namespace versine::app {
+
+struct SimulateRun {
+  std::filesystem::path folder;
+  std::string summary_json;
+  std::string summary_text;
+};
+
+/// Runs a scenario. `output` overrides the folder (default: the scenario's name with .recording, beside it); `runs`
+/// above 0 overrides the scenario's number. Several runs go to run_0000, run_0001, ... in that folder; they share truth
+/// but for the sensors' constants. The folder appears whole or not at all.
+[[nodiscard]] Expected<SimulateRun> run_simulate(const std::filesystem::path& job,
+                                                 std::span<const std::string> overrides,
+                                                 const std::filesystem::path& output, int runs, int threads,
+                                                 Progress& progress);
+
+/// The survey job that processes such a recording, as TOML.
+[[nodiscard]] std::string survey_job(const SimulateConfig& config, const simulation::SimulatedRecording& recording);
+
+}  // namespace versine::app

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "versine/app/simulate.hpp"
+#include "versine/core/units.hpp"
+#include "versine/geodesy/attitude.hpp"
+
+namespace versine::app {
+
+namespace {
+std::string list(const Eigen::Vector3d& v) {
+  return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x(), v.y(), v.z());
+}
+}  // namespace
+
+std::string survey_job(const SimulateConfig& c, const simulation::SimulatedRecording& r) {
+  const auto& trolley = c.scenario.trolley;
+  const geodesy::Euler& mounting = c.has_vehicle ? c.vehicle.mounting : trolley.mounting;
+  // A job gives lever arms in the IMU's axes, a scenario in the trolley's.
+  const Eigen::Matrix3d C_bv = geodesy::to_matrix(mounting).transpose();
+  std::string text = fmt::format(
+      "# Processes this simulated recording: versine survey survey.toml\njob = \"survey\"\n"
+      "title = \"{}\"\n",
+      c.title);
+  if (!r.imu.empty()) {
+    text += fmt::format("\n[imu]\nfile = \"imu.csv\"\ngrade = \"{}\"\nmounting_deg = {}\n", c.imu_grade,
+                        list(Eigen::Vector3d(mounting.roll, mounting.pitch, mounting.yaw) / units::deg));
+  }
+  if (!r.gnss.empty()) {
+    text += fmt::format("\n[gnss]\nfile = \"gnss.csv\"\nlever_arm_m = {}\n", list(C_bv * c.gnss.antenna));
+  }
+  for (std::size_t i = 0; i < r.odometers.size(); ++i) {
+    if (r.odometers[i].empty()) continue;
+    text += fmt::format("\n[[odometer]]\nfile = \"odometer_{}.csv\"\n", i + 1);
+  }
+  if (!r.odometers.empty()) {
+    const Eigen::Vector3d wheel = c.has_vehicle ? Eigen::Vector3d(-c.vehicle.imu)
+                                                : Eigen::Vector3d(0.5 * (trolley.front_x + trolley.rear_x),
+                                                                  trolley.reference_y, trolley.contact_z);
+    text += fmt::format("\n[wheel]\nlever_arm_m = {}\n", list(C_bv * wheel));
+  }
+  if (!r.landmarks.empty()) {
+    text +=
+        fmt::format("\n[landmarks]\nfile = \"landmarks.csv\"\nlever_arm_m = {}\n", list(C_bv * c.total_station.place));
+  }
+  return text;
+}
+
+}  // namespace versine::app
