@@ -10,29 +10,37 @@
 /// closed forms of time, and rates and forces follow by the definitions (in double, integrated by Gauss-Legendre).
 namespace versine::test {
 
-/// A vehicle on a curved, undulating way with roll and pitch, speeds and heights that vary: everything excited.
+/// A vehicle that stands, then drives on a curved, undulating way with roll and pitch: everything excited. It moves
+/// along its own forward axis, as a vehicle on rails does.
 struct Motion {
   geodesy::Geodetic origin{0.9, 0.2, 150.0};
-  double speed = 10.0, swing = 0.0, turn = 0.0, climb = 0.0, roll = 0.0;  ///< m/s, m/s, rad, m, rad
-  double period = 60.0;
+  double speed = 10.0, swing = 0.0;            ///< m/s: mean, and amplitude of its variation
+  double turn = 0.0, climb = 0.0, roll = 0.0;  ///< rad: amplitudes
+  double period = 60.0;                        ///< s
+  double still = 0.0;                          ///< s of standstill before
   Time epoch{1'700'000'000'000'000'000};
 
+  /// Time since the start of motion, starting smoothly; it drives everything.
+  [[nodiscard]] double clock(double t) const {
+    const double s = t - still;
+    return still == 0.0 ? t : s > 0.0 ? s * s * s / (s * s + 25.0) : 0.0;
+  }
+  [[nodiscard]] geodesy::Euler attitude(double t) const {
+    const double w = 2.0 * M_PI / period, c = clock(t);
+    return {roll * std::sin(1.3 * w * c), climb * std::sin(w * c), 0.5 + turn * std::sin(0.7 * w * c)};
+  }
+  [[nodiscard]] double forward(double t) const {
+    const double w = 2.0 * M_PI / period, c = clock(t);
+    const double ramp = still == 0.0 ? 1.0 : c * c / (c * c + 25.0);
+    return ramp * (speed + swing * std::sin(w * c));
+  }
+  [[nodiscard]] Eigen::Vector3d velocity(double t) const { return forward(t) * geodesy::to_matrix(attitude(t)).col(0); }
   [[nodiscard]] inertial::NavState at(double t) const {
-    const double w = 2.0 * M_PI / period;
-    const double heading = 0.5 + turn * std::sin(0.7 * w * t);
-    const Eigen::Vector3d v = velocity(t);
     inertial::NavState s;
     s.time = epoch + Duration::from_seconds(t);
-    s.v_eb_n = v;
-    s.q_nb = geodesy::to_quaternion(
-        geodesy::Euler{roll * std::sin(1.3 * w * t), -std::atan2(-v.z(), std::hypot(v.x(), v.y()) + 1.0), heading});
+    s.v_eb_n = velocity(t);
+    s.q_nb = geodesy::to_quaternion(attitude(t));
     return s;
-  }
-  [[nodiscard]] Eigen::Vector3d velocity(double t) const {
-    const double w = 2.0 * M_PI / period;
-    const double heading = 0.5 + turn * std::sin(0.7 * w * t);
-    const double forward = speed + swing * std::sin(w * t);
-    return {forward * std::cos(heading), forward * std::sin(heading), -climb * w * std::cos(w * t)};
   }
 };
 

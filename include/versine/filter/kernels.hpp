@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+
+#include "versine/filter/linearized.hpp"
+
+/// The arithmetic of a Kalman filter whose states are some that move and many that are parameters. `N` is the number
+/// of states, known to the compiler for the common layouts, `Eigen::Dynamic` (up to max_states) for the others; either
+/// way nothing is allocated.
+namespace versine::filter {
+
+template <int N>
+inline constexpr int capacity = N == Eigen::Dynamic ? max_states : N;
+template <int N>
+using StateVector = Eigen::Matrix<double, N, 1, Eigen::ColMajor, capacity<N>, 1>;
+template <int N>
+using StateMatrix = Eigen::Matrix<double, N, N, Eigen::ColMajor, capacity<N>, capacity<N>>;
+
+inline constexpr int moving = 10;  ///< states that move: position, velocity, attitude, odometer distance
+
+/// A transition: the first `moving` rows are full, a parameter only decays (1: constant). White noise of the variances
+/// `noise` acts half before and half after it (trapezoidal rule).
+template <int N>
+struct Transition {
+  Eigen::Matrix<double, moving, N, Eigen::ColMajor, moving, capacity<N>> top;
+  StateVector<N> decay;  ///< entries of the moving states are not used
+  StateVector<N> noise;
+};
+
+/// P after the transition; symmetric.
+template <int N>
+void predict(StateMatrix<N>& P, const Transition<N>& phi) {
+  const Eigen::Index n = P.rows();
+  P.diagonal() += 0.5 * phi.noise;
+  Eigen::Matrix<double, moving, N, Eigen::ColMajor, moving, capacity<N>> rows(moving, n);
+  rows.noalias() = phi.top.lazyProduct(P);
+  Eigen::Matrix<double, moving, moving> corner;
+  corner.noalias() = rows.lazyProduct(phi.top.transpose());
+  for (Eigen::Index j = moving; j < n; ++j) {
+    P.col(j).template head<moving>() = rows.col(j) * phi.decay[j];
+    P.col(j).tail(n - moving) = (phi.decay[j] * P.col(j).tail(n - moving)).cwiseProduct(phi.decay.tail(n - moving));
+    P.row(j).template head<moving>() = P.col(j).template head<moving>().transpose();
+  }
+  P.template topLeftCorner<moving, moving>() = 0.5 * (corner + corner.transpose());
+  P.diagonal() += 0.5 * phi.noise;
+}
+
+/// One uncorrelated row of a measurement as the filter processed it: all that a smoother needs.
+template <int N>
+struct UpdateRow {
+  double innovation = 0.0;
+  double variance = 1.0;  ///< of the innovation
+  StateVector<N> h, gain;
+};
+
+/// Processes one row: Joseph's form (I - k h') P (I - k h')' + k r k' in O(n^2). Returns gain and innovation and moves
+/// the error estimate `x`.
+template <int N>
+UpdateRow<N> update_row(StateVector<N>& x, StateMatrix<N>& P, const StateVector<N>& h, double z, double r) {
+  UpdateRow<N> row;
+  row.h = h;
+  StateVector<N> a(P.rows());
+  a.noalias() = P.lazyProduct(h);
+  row.variance = h.dot(a) + r;
+  row.gain = a / row.variance;
+  row.innovation = z - h.dot(x);
+  x += row.gain * row.innovation;
+  P.noalias() -= row.gain.lazyProduct(a.transpose());
+  a.noalias() = P.lazyProduct(h);
+  const StateVector<N> correction = r * row.gain - a;
+  P.noalias() += correction.lazyProduct(row.gain.transpose());
+  P = (0.5 * (P + P.transpose())).eval();
+  return row;
+}
+
+/// Adjoint state of the modified Bryson-Frazier smoother (Bierman 1973): the smoothed estimate is `x - P lambda`, its
+/// covariance `P - P Lambda P`, with x and P of the filter at the same moment.
+template <int N>
+struct Adjoint {
+  StateVector<N> lambda;
+  StateMatrix<N> Lambda;
+  explicit Adjoint(Eigen::Index n) : lambda(n), Lambda(n, n) {
+    lambda.setZero();
+    Lambda.setZero();
+  }
+};
+
+/// From after a row to before it.
+template <int N>
+void undo_row(Adjoint<N>& a, const StateVector<N>& h, const StateVector<N>& gain, double innovation, double variance) {
+  a.lambda -= h * (gain.dot(a.lambda) + innovation / variance);
+  StateVector<N> w(h.size());
+  w.noalias() = a.Lambda.lazyProduct(gain);
+  const StateVector<N> u = 0.5 * (gain.dot(w) + 1.0 / variance) * h - w;
+  a.Lambda.noalias() += u.lazyProduct(h.transpose());
+  a.Lambda.noalias() += h.lazyProduct(u.transpose());
+}
+
+/// From after a transition to before it.
+template <int N>
+void undo_transition(Adjoint<N>& a, const Transition<N>& phi) {
+  const Eigen::Index n = a.lambda.size(), m = n - moving;
+  const auto decay = phi.decay.tail(m);
+  StateVector<N> lambda(n);
+  lambda.noalias() = phi.top.transpose().lazyProduct(a.lambda.template head<moving>());
+  lambda.tail(m) += decay.cwiseProduct(a.lambda.tail(m));
+  a.lambda = lambda;
+
+  // Lambda' = T' L_tt T + T' L_tp D + D L_pt T + D L_pp D, with T the full rows and D the decays.
+  Eigen::Matrix<double, moving, N, Eigen::ColMajor, moving, capacity<N>> w(moving, n);
+  w.noalias() = (0.5 * a.Lambda.template topLeftCorner<moving, moving>()).eval().lazyProduct(phi.top);
+  w.rightCols(m) += a.Lambda.topRightCorner(moving, m) * decay.asDiagonal();
+  StateMatrix<N> half(n, n);
+  half.noalias() = phi.top.transpose().lazyProduct(w);
+  StateMatrix<N> next = half + half.transpose();
+  for (Eigen::Index j = 0; j < m; ++j) {
+    next.col(moving + j).tail(m) += decay[j] * decay.cwiseProduct(a.Lambda.col(moving + j).tail(m));
+  }
+  a.Lambda = next;
+}
+
+/// Gain A of the Rauch-Tung-Striebel smoother over one transition, `P Phi' (P predicted)^-1` (Chen 2018 eq. 13), from
+/// the filter's P before it. Returns also the predicted covariance. False when that is not positive definite.
+template <int N>
+bool rts_gain(const StateMatrix<N>& P, const Transition<N>& phi, StateMatrix<N>& gain, StateMatrix<N>& predicted);
+
+extern template bool rts_gain<23>(const StateMatrix<23>&, const Transition<23>&, StateMatrix<23>&, StateMatrix<23>&);
+extern template bool rts_gain<25>(const StateMatrix<25>&, const Transition<25>&, StateMatrix<25>&, StateMatrix<25>&);
+extern template bool rts_gain<Eigen::Dynamic>(const StateMatrix<Eigen::Dynamic>&, const Transition<Eigen::Dynamic>&,
+                                              StateMatrix<Eigen::Dynamic>&, StateMatrix<Eigen::Dynamic>&);
+
+}  // namespace versine::filter

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include "versine/filter/linearized.hpp"
+#include "versine/fusion/ins_state.hpp"
+
+/// Measurement models of the aided INS, one file each under src/fusion/models. Each returns z (predicted minus
+/// measured), H and R at the moment of the measurement, and knows nothing of the filter.
+namespace versine::fusion {
+
+/// Antenna position (Chen 2018 eq. 8), with the bias and the lever arm as states where they are estimated.
+[[nodiscard]] filter::Linearized gnss_position(const InsMoment& m, const InsLayout& layout,
+                                               const sensors::GnssSample& sample, const Eigen::Vector3d& sigma_ned);
+/// Antenna velocity (Groves eq. 14.104). REQUIRES sample.v_ned.
+[[nodiscard]] filter::Linearized gnss_velocity(const InsMoment& m, const InsLayout& layout,
+                                               const sensors::GnssSample& sample, double sigma_minimum);
+/// Reading of the odometer's distance counter.
+[[nodiscard]] filter::Linearized odometer_distance(const InsMoment& m, const InsLayout& layout,
+                                                   const sensors::OdometerSample& sample, double sigma);
+/// Forward speed at the wheel with the odometer's scale factor (Chen 2018 eq. 12, first row).
+[[nodiscard]] filter::Linearized forward_speed(const InsMoment& m, const InsLayout& layout,
+                                               const sensors::SpeedSample& sample, double sigma);
+/// Non-holonomic constraint: no velocity to the right and down at the wheel (Chen 2018 eq. 10 to 12).
+[[nodiscard]] filter::Linearized constraint(const InsMoment& m, const InsLayout& layout, double sigma);
+/// The vehicle stands: no velocity of the IMU in n.
+[[nodiscard]] filter::Linearized zero_velocity(const InsMoment& m, const InsLayout& layout, double sigma);
+/// The vehicle stands: the mean rate of b against n is zero.
+[[nodiscard]] filter::Linearized zero_rate(const InsMoment& m, const InsLayout& layout, double sigma);
+/// Heading of the vehicle's forward axis.
+[[nodiscard]] filter::Linearized vehicle_heading(const InsMoment& m, const InsLayout& layout, double heading,
+                                                 double sigma);
+/// Position of the instrument or prism on a standing vehicle, with its full covariance.
+[[nodiscard]] filter::Linearized landmark_position(const InsMoment& m, const InsLayout& layout,
+                                                   const sensors::LandmarkSample& sample,
+                                                   const Eigen::Vector3d& lever_b);
+/// Attitude of the instrument on a standing vehicle. REQUIRES sample.q_ns.
+[[nodiscard]] filter::Linearized landmark_attitude(const InsMoment& m, const InsLayout& layout,
+                                                   const sensors::LandmarkSample& sample,
+                                                   const Eigen::Quaterniond& q_bs);
+
+/// Velocity of the wheel point in the vehicle frame (Chen 2018 eq. 9), and its derivative with respect to all states.
+struct WheelVelocity {
+  Eigen::Vector3d v_v;
+  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor, 3, filter::max_states> H;
+};
+[[nodiscard]] WheelVelocity wheel_velocity(const InsMoment& m, const InsLayout& layout);
+
+/// Rate of the odometer's reading, m/s, and its derivative: how its distance error grows.
+struct DistanceRate {
+  double rate = 0.0;
+  Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, filter::max_states> H;
+};
+[[nodiscard]] DistanceRate distance_rate(const InsMoment& m, const InsLayout& layout);
+
+}  // namespace versine::fusion

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Cholesky>
+
+#include "aids.hpp"
+#include "imu_walk.hpp"
+#include "segment_start.hpp"
+#include "steps.hpp"
+#include "versine/geodesy/attitude.hpp"
+#include "versine/inertial/error_dynamics.hpp"
+
+namespace versine::fusion::detail {
+
+/// The forward Kalman filter over one segment: propagates, applies each aid at its own time, emits steps.
+template <int N>
+class Forward {
+ public:
+  Forward(const AidedInsInput& input, const AidedInsOptions& options, const InsLayout& layout,
+          const std::vector<inertial::Interval>& standstills, Judge& judge)
+      : in_(input), o_(options), l_(layout), standstills_(standstills), judge_(judge), noise_(options, layout) {}
+
+  /// `tick(fraction)` is called now and then; false stops the pass.
+  template <class Tick>
+  bool run(const Segment& segment, const Start& start, Steps<N>& out, SegmentStart& report, Tick&& tick) {
+    begin(segment, start, out);
+    const std::vector<Event> events = events_between(in_, o_, segment.from, segment.to);
+    const Duration interval = Duration::from_seconds(1.0 / o_.covariance_rate), slack{interval.ns / 4};
+    ImuWalk walk(in_.imu, segment.begin, segment.begin);
+    std::size_t event = 0;
+    while (moment_.estimate.nav.time < segment.to) {
+      const Time now = moment_.estimate.nav.time;
+      // A step ends at the next event, or at the IMU sample that completes the covariance interval.
+      Time end = grid_end(segment, walk.next(), now + interval);
+      if (event < events.size() && events[event].time <= end + slack) end = std::min(segment.to, events[event].time);
+      const std::size_t first_event = event;
+      while (event < events.size() && events[event].time <= end) ++event;
+      propagate(walk, end, std::span(events).subspan(first_event, event - first_event), out);
+      for (std::size_t e = first_event; e < event; ++e) apply(events[e], out);
+      apply_constraints(out);
+      emit(walk.next(), out);
+      note_alignment(start, report);
+      if (out.steps.size() % 256 == 0 &&
+          !tick((now - segment.from).seconds() / std::max(1e-9, (segment.to - segment.from).seconds()))) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  [[nodiscard]] const InsEstimate& estimate() const { return moment_.estimate; }
+  [[nodiscard]] const filter::StateMatrix<N>& covariance() const { return P_; }
+
+ private:
+  using Vector = filter::StateVector<N>;
+
+  void begin(const Segment&, const Start& start, Steps<N>& out) {
+    moment_.estimate = start.estimate;
+    refresh();
+    P_ = start.covariance;
+    distance_known_ = false;
+    emit(0, out);
+    out.waypoints.back().next_sample = 0;
+  }
+
+  [[nodiscard]] Time grid_end(const Segment& s, std::size_t next, Time wanted) const {
+    while (next + 1 < s.end && in_.imu[next].time < wanted) ++next;
+    return in_.imu[next].time;
+  }
+
+  void refresh() { moment_.C_nb = moment_.estimate.nav.q_nb.toRotationMatrix(); }
+
+  void propagate(ImuWalk& walk, Time end, std::span<const Event> events, Steps<N>& out) {
+    InsEstimate& e = moment_.estimate;
+    const Time begin = e.nav.time;
+    const DistanceRate rate_before = distance_rate(moment_, l_);
+    accumulator_.reset();
+    Eigen::Vector3d turned = Eigen::Vector3d::Zero();
+    double way = 0.0;
+    walk.advance(e.nav, moment_.C_nb, e.imu, end,
+                 [&](const inertial::StepGeometry& g, const inertial::Increment& piece, const inertial::NavState&) {
+                   accumulator_.add(g, piece);
+                   turned += piece.rotation;
+                   moment_.omega_ib_b = piece.rotation / piece.dt;
+                   moment_.omega_nb_b = moment_.omega_ib_b - g.C_nb_middle.transpose() * (g.omega_ie + g.omega_en);
+                   const Eigen::Vector3d wheel_b =
+                       g.C_nb_middle.transpose() * g.v_middle + moment_.omega_nb_b.cross(e.wheel_lever);
+                   way += e.C_vb.row(0).dot(wheel_b) * piece.dt;
+                 });
+    e.distance += (1.0 + e.odometer_scale) * way;
+    dt_ = (end - begin).seconds();
+    mean_rate_ib_ = turned / dt_;
+    way_ = std::abs(way);
+
+    step_.noise = {dt_, way_, std::exchange(inflation_, 0.0), !distance_known_ || restart_distance_};
+    const auto reading =
+        std::find_if(events.begin(), events.end(), [&](const Event& x) { return x.kind == Event::Kind::odometer; });
+    if (reading != events.end() && step_.noise.new_distance) {
+      e.distance = in_.odometer[reading->index].distance;
+      anchored_ = distance_known_ = true;
+      restart_distance_ = false;
+    }
+    fill_transition(rate_before);
+    filter::predict<N>(P_, transition_);
+    pack_transition<N>(transition_, step_);
+    step_.first_row = out.rows.size();
+    step_.rows = 0;
+  }
+
+  /// The rows of position, velocity and attitude from the accumulated matrices; the row of the distance from its rate
+  /// before and after (trapezoidal rule).
+  void fill_transition(const DistanceRate& before) {
+    const int n = l_.size();
+    transition_.top.setZero(filter::moving, n);
+    for (int i = 0; i < 9; ++i) {
+      const auto& row = accumulator_.rows()[static_cast<std::size_t>(i)];
+      transition_.top.row(i).template head<9>() = row.template head<9>().matrix().transpose();
+      transition_.top.row(i).template segment<12>(l_.gyro_bias.offset) =
+          row.template segment<12>(9).matrix().transpose();
+    }
+    noise_.template fill<N>(step_.noise, transition_);
+    if (step_.noise.new_distance) return;
+    const DistanceRate after = distance_rate(moment_, l_);
+    const int d = l_.distance.offset, m = n - filter::moving;
+    auto row = transition_.top.row(d);
+    row.noalias() = after.H.template head<9>() * transition_.top.template topRows<9>();
+    row.tail(m) += after.H.tail(m).cwiseProduct(transition_.decay.tail(m).transpose());
+    row = (0.5 * dt_ * (row + before.H)).eval();
+    row[d] += 1.0;
+  }
+
+  void apply(const Event& event, Steps<N>& out) {
+    const std::size_t i = event.index;
+    const Time t = event.time;
+    switch (event.kind) {
+      case Event::Kind::gnss: {
+        const sensors::GnssSample& s = in_.gnss[i];
+        if (o_.use_gnss_position) {
+          const Eigen::Vector3d sigma = (o_.gnss_sigma_scale * s.sigma_ned).cwiseMax(o_.gnss_sigma_minimum);
+          update("gnss position", t, gnss_position(moment_, l_, s, sigma), false, out);
+        }
+        if (o_.use_gnss_velocity && s.v_ned) {
+          update("gnss velocity", t, gnss_velocity(moment_, l_, s, 1e-3), false, out);
+        }
+        break;
+      }
+      case Event::Kind::landmark: {
+        const sensors::LandmarkSample& s = in_.landmarks[i];
+        update("landmark", t, landmark_position(moment_, l_, s, o_.landmark_lever.l_b), false, out);
+        if (s.q_ns) update("landmark attitude", t, landmark_attitude(moment_, l_, s, o_.q_bs), false, out);
+        break;
+      }
+      case Event::Kind::heading:
+        update("heading", t, vehicle_heading(moment_, l_, in_.heading[i].heading, in_.heading[i].sigma), true, out);
+        break;
+      case Event::Kind::odometer:
+        // The first reading after a start is where the distance is counted from.
+        if (!std::exchange(anchored_, false)) {
+          update("odometer", t, odometer_distance(moment_, l_, in_.odometer[i], o_.odometer_sigma), true, out);
+        }
+        break;
+      case Event::Kind::speed: {
+        // Errors that stay alike count as white noise of the same power at low frequency.
+        const double spacing = std::max(1e-3, (t - std::exchange(last_speed_, t)).seconds());
+        const double sigma = o_.speed_sigma * std::sqrt(std::max(1.0, 2.0 * o_.speed_correlation_time / spacing));
+        update("speed", t, forward_speed(moment_, l_, in_.speed[i], sigma), true, out);
+        break;
+      }
+    }
+  }
+
+  void apply_constraints(Steps<N>& out) {
+    const Time t = moment_.estimate.nav.time;
+    while (standstill_ < standstills_.size() && standstills_[standstill_].to < t) ++standstill_;
+    standing_ = standstill_ < standstills_.size() && standstills_[standstill_].contains(t);
+    if (standing_ && o_.zero_velocity) {
+      if ((t - last_zero_).seconds() < o_.zero_interval - 0.5 * dt_) return;
+      last_zero_ = t;
+      update("zero velocity", t, zero_velocity(moment_, l_, o_.zero_velocity_sigma), true, out);
+      InsMoment mean = moment_;
+      mean.omega_nb_b += mean_rate_ib_ - mean.omega_ib_b;
+      mean.omega_ib_b = mean_rate_ib_;
+      const double sigma = std::hypot(o_.zero_rate_sigma, o_.imu_errors.gyro.random_walk / std::sqrt(dt_));
+      update("zero rate", t, zero_rate(mean, l_, sigma), true, out);
+      return;
+    }
+    if (!o_.constraint) return;
+    const double since = std::min(1.0, (t - last_constraint_).seconds());
+    if (since < std::max(o_.constraint_interval, 0.75 / o_.covariance_rate)) return;
+    last_constraint_ = t;
+    // The sideways angle stays alike over a wheelbase; taken as white at this rate it must be as much larger.
+    const double speed = moment_.estimate.nav.v_eb_n.norm();
+    const double alike = std::max(1.0, 2.0 * o_.constraint_correlation / std::max(1e-3, speed * since));
+    const double angle = o_.constraint_angle * speed;
+    update("constraint", t,
+           constraint(moment_, l_, std::sqrt(std::pow(o_.constraint_sigma, 2) + angle * angle * alike)), true, out);
+  }
+
+  void update(const char* sensor, Time t, filter::Linearized l, bool often, Steps<N>& out) {
+    const int m = l.rows();
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, filter::max_rows, filter::max_states> a(
+        m, l_.size());
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, filter::max_rows, filter::max_rows> S = l.R;
+    for (int i = 0; i < m; ++i) a.row(i).noalias() = l.H.row(i).lazyProduct(P_);
+    S += a.lazyProduct(l.H.transpose());
+    const Judge::Verdict verdict = judge_.judge(sensor, t, l, S, often);
+    if (verdict == Judge::Verdict::doubt_filter) {
+      if (std::string_view(sensor) == "odometer")
+        restart_distance_ = true;
+      else
+        inflation_ = std::max(inflation_, std::min(1e8, l.z.squaredNorm()));
+    }
+    if (verdict != Judge::Verdict::use) return;
+
+    // Uncorrelated rows of unit variance.
+    const Eigen::LLT<
+        Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, filter::max_rows, filter::max_rows>>
+        llt(l.R);
+    if (llt.info() != Eigen::Success) return;
+    llt.matrixL().solveInPlace(l.z);
+    llt.matrixL().solveInPlace(l.H);
+    Vector x = Vector::Zero(l_.size());
+    for (int i = 0; i < m; ++i) {
+      const Vector h = l.H.row(i).transpose();
+      const filter::UpdateRow<N> row = filter::update_row<N>(x, P_, h, l.z[i], 1.0);
+      Row<N> packed;
+      packed.innovation = static_cast<float>(row.innovation);
+      packed.variance = static_cast<float>(row.variance);
+      for (Eigen::Index k = 0; k < row.h.size(); ++k) {
+        packed.h[static_cast<std::size_t>(k)] = static_cast<float>(row.h[k]);
+        packed.gain[static_cast<std::size_t>(k)] = static_cast<float>(row.gain[k]);
+      }
+      out.rows.push_back(packed);
+      ++step_.rows;
+    }
+    moment_.estimate = without_error(moment_.estimate, l_, x);
+    refresh();
+  }
+
+  void emit(std::size_t next_sample, Steps<N>& out) {
+    pack<N>(P_, step_);
+    out.steps.push_back(step_);
+    out.waypoints.push_back({moment_.estimate, next_sample});
+  }
+
+  /// The first standstill ends: what the fine alignment has reached.
+  void note_alignment(const Start& start, SegmentStart& report) {
+    if (!start.standing || report_done_) return;
+    if (standing_) {
+      report.fine_sigma = P_.diagonal().template segment<3>(l_.attitude.offset).cwiseSqrt();
+      report.fine_attitude = geodesy::to_euler(moment_.C_nb);
+    } else if (report.fine_sigma) {
+      report_done_ = true;
+    }
+  }
+
+  const AidedInsInput& in_;
+  const AidedInsOptions& o_;
+  const InsLayout& l_;
+  const std::vector<inertial::Interval>& standstills_;
+  Judge& judge_;
+  NoiseModel noise_;
+  InsMoment moment_;
+  filter::StateMatrix<N> P_;
+  filter::Transition<N> transition_;
+  inertial::TransitionAccumulator accumulator_;
+  Step<N> step_;
+  Eigen::Vector3d mean_rate_ib_ = Eigen::Vector3d::Zero();
+  double dt_ = 0.0, way_ = 0.0, inflation_ = 0.0;
+  bool distance_known_ = false, anchored_ = false, restart_distance_ = false, standing_ = false, report_done_ = false;
+  std::size_t standstill_ = 0;
+  Time last_speed_{INT64_MIN / 2}, last_zero_{INT64_MIN / 2}, last_constraint_{INT64_MIN / 2};
+};
+
+}  // namespace versine::fusion::detail

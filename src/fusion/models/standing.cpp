@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "versine/fusion/measurement_models.hpp"
+#include "versine/geodesy/attitude.hpp"
+#include "versine/geodesy/ellipsoid.hpp"
+
+namespace versine::fusion {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+filter::Linearized zero_velocity(const InsMoment& m, const InsLayout& layout, double sigma) {
+  filter::Linearized l(3, layout.size());
+  l.z = m.estimate.nav.v_eb_n;
+  l.H.middleCols<3>(layout.velocity.offset).setIdentity();
+  l.R.diagonal().setConstant(sigma * sigma);
+  return l;
+}
+
+filter::Linearized zero_rate(const InsMoment& m, const InsLayout& layout, double sigma) {
+  filter::Linearized l(3, layout.size());
+  // omega_nb = omega_ib - C_bn omega_in: the gyros' residual errors, and Earth rate seen through a wrong attitude.
+  l.z = m.omega_nb_b;
+  l.H.middleCols<3>(layout.gyro_bias.offset).setIdentity();
+  l.H.middleCols<3>(layout.gyro_scale.offset) = m.omega_ib_b.asDiagonal();
+  const Vector3d omega_in_n = m.C_nb * (m.omega_ib_b - m.omega_nb_b);
+  l.H.middleCols<3>(layout.attitude.offset) = m.C_nb.transpose() * geodesy::skew(omega_in_n);
+  l.R.diagonal().setConstant(sigma * sigma);
+  return l;
+}
+
+filter::Linearized vehicle_heading(const InsMoment& m, const InsLayout& layout, double heading, double sigma) {
+  filter::Linearized l(1, layout.size());
+  const Vector3d x = m.C_nb * m.estimate.C_vb.row(0).transpose();  // forward axis of v in n
+  const double level2 = x.head<2>().squaredNorm();
+  l.z[0] = geodesy::wrap_pi(std::atan2(x.y(), x.x()) - heading);
+  // x_hat = x - phi x x: d(atan2) = (x dy - y dx) / level^2.
+  const Eigen::RowVector3d gradient(-x.y() / level2, x.x() / level2, 0.0);
+  l.H.middleCols<3>(layout.attitude.offset) = gradient * geodesy::skew(x);
+  if (layout.mounting.enabled()) {
+    // C_vb = (I + eta x) C_vb_hat turns the forward axis, the first row of C_vb, by eta x e1.
+    const Matrix3d C_nv = m.C_nb * m.estimate.C_vb.transpose();
+    l.H(0, layout.mounting.offset) = -gradient.dot(C_nv.col(2));
+    l.H(0, layout.mounting.offset + 1) = gradient.dot(C_nv.col(1));
+  }
+  l.R(0, 0) = sigma * sigma;
+  return l;
+}
+
+filter::Linearized landmark_position(const InsMoment& m, const InsLayout& layout, const sensors::LandmarkSample& sample,
+                                     const Vector3d& lever_b) {
+  filter::Linearized l(3, layout.size());
+  const Vector3d lever_n = m.C_nb * lever_b;
+  l.z = geodesy::wgs84.ned_difference(sample.position, m.estimate.nav.position) + lever_n;
+  l.H.middleCols<3>(layout.position.offset).setIdentity();
+  l.H.middleCols<3>(layout.attitude.offset) = geodesy::skew(lever_n);
+  l.R = sample.covariance;
+  return l;
+}
+
+filter::Linearized landmark_attitude(const InsMoment& m, const InsLayout& layout, const sensors::LandmarkSample& sample,
+                                     const Eigen::Quaterniond& q_bs) {
+  filter::Linearized l(3, layout.size());
+  // q_hat = (I - phi x) q: the rotation from the estimate to the measured attitude is phi.
+  const Eigen::Quaterniond measured = *sample.q_ns * q_bs.conjugate();
+  l.z = geodesy::to_rotation_vector(measured * m.estimate.nav.q_nb.conjugate());
+  l.H.middleCols<3>(layout.attitude.offset).setIdentity();
+  l.R = sample.attitude_covariance;
+  return l;
+}
+
+}  // namespace versine::fusion

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <array>
+#include <cmath>
+#include <deque>
+
+#include "versine/filter/kernels.hpp"
+#include "versine/fusion/ins_state.hpp"
+
+namespace versine::fusion::detail {
+
+/// What makes the noise and the decay of a step, kept instead of them.
+struct StepNoise {
+  double dt = 0.0;           ///< s
+  double way = 0.0;          ///< m travelled
+  double inflation = 0.0;    ///< m^2 added to the position after the filter lost trust in itself
+  bool new_distance = true;  ///< the odometer's distance starts anew (or is not in use): nothing of its past is kept
+};
+
+/// Decay and noise of all states from the options (white noise of gyros and accelerometers is alike on the three axes,
+/// so that it needs no attitude).
+class NoiseModel {
+ public:
+  NoiseModel(const AidedInsOptions& o, const InsLayout& layout) : o_(o), l_(layout) {}
+
+  template <int N>
+  void fill(const StepNoise& s, filter::Transition<N>& t) const {
+    const auto& g = o_.imu_errors.gyro;
+    const auto& a = o_.imu_errors.accelerometer;
+    const int n = l_.size();
+    t.decay.setOnes(n);
+    t.noise.setZero(n);
+    const auto set = [&](auto block, double variance) {
+      t.noise.template segment<decltype(block)::size>(block.offset).setConstant(variance);
+    };
+    set(l_.position, s.inflation);
+    set(l_.velocity, a.random_walk * a.random_walk * s.dt + 0.01 * s.inflation);
+    set(l_.attitude, g.random_walk * g.random_walk * s.dt);
+    set(l_.distance, s.new_distance ? 2.0 * o_.odometer_sigma * o_.odometer_sigma
+                                    : o_.odometer_random_walk * o_.odometer_random_walk * s.way + 1e-14);
+    set(l_.gyro_bias, walk(g) * s.dt);
+    set(l_.accelerometer_bias, walk(a) * s.dt);
+    set(l_.odometer_scale, o_.odometer_scale_walk * o_.odometer_scale_walk * s.dt);
+    if (l_.gnss_bias.enabled()) {
+      const double decay = std::exp(-s.dt / o_.gnss_bias_time);
+      t.decay.template segment<3>(l_.gnss_bias.offset).setConstant(decay);
+      // Half of the noise acts before the decay (filter::Transition): scaled so that the process is stationary.
+      set(l_.gnss_bias, o_.gnss_bias * o_.gnss_bias * 2.0 * (1.0 - decay * decay) / (1.0 + decay * decay));
+    }
+  }
+
+ private:
+  /// A slowly varying bias on top of a constant one: a random walk that grows as the Gauss-Markov process does at
+  /// first.
+  [[nodiscard]] static double walk(const sensors::TriadErrors& e) {
+    return 2.0 * e.bias_instability * e.bias_instability / e.correlation_time + e.rate_random_walk * e.rate_random_walk;
+  }
+  const AidedInsOptions& o_;
+  const InsLayout& l_;
+};
+
+/// A step of the forward pass as it is kept for the smoother: float but for the estimate (its 7 digits change a sigma
+/// by 1e-6 of itself and a position by 1e-6 of what the smoother corrects).
+template <int N>
+struct Step {
+  static constexpr int n = filter::capacity<N>;
+  StepNoise noise;
+  std::size_t first_row = 0, rows = 0;
+  std::array<float, n*(n + 1) / 2> covariance{};       ///< after the updates at the step's end
+  std::array<float, filter::moving * n> transition{};  ///< full rows less the identity, of the step
+};
+
+template <int N>
+struct Row {
+  float innovation = 0, variance = 1;
+  std::array<float, filter::capacity<N>> h{}, gain{};
+};
+
+/// The estimate after the updates at a step's end, and where the IMU stands there.
+struct Waypoint {
+  InsEstimate estimate;
+  std::size_t next_sample = 0;
+};
+
+template <int N>
+struct Steps {
+  std::vector<Waypoint> waypoints;  ///< one more than steps would need: [0] is the start; step k ends at waypoint k
+  std::deque<Step<N>> steps;        ///< steps[0] holds the covariance at the start only
+  std::deque<Row<N>> rows;
+};
+
+template <int N>
+void pack(const filter::StateMatrix<N>& P, Step<N>& s) {
+  std::size_t k = 0;
+  for (Eigen::Index j = 0; j < P.cols(); ++j) {
+    for (Eigen::Index i = 0; i <= j; ++i) s.covariance[k++] = static_cast<float>(P(i, j));
+  }
+}
+
+template <int N>
+void unpack(const Step<N>& s, filter::StateMatrix<N>& P) {
+  std::size_t k = 0;
+  for (Eigen::Index j = 0; j < P.cols(); ++j) {
+    for (Eigen::Index i = 0; i <= j; ++i) P(i, j) = P(j, i) = static_cast<double>(s.covariance[k++]);
+  }
+}
+
+template <int N>
+void pack_transition(const filter::Transition<N>& t, Step<N>& s) {
+  for (Eigen::Index j = 0; j < t.top.cols(); ++j) {
+    for (int i = 0; i < filter::moving; ++i) {
+      s.transition[static_cast<std::size_t>(j * filter::moving + i)] =
+          static_cast<float>(t.top(i, j) - (i == j ? 1.0 : 0.0));
+    }
+  }
+}
+
+template <int N>
+void unpack_transition(const Step<N>& s, const NoiseModel& noise, filter::Transition<N>& t, int n) {
+  t.top.resize(filter::moving, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (int i = 0; i < filter::moving; ++i) {
+      t.top(i, j) =
+          static_cast<double>(s.transition[static_cast<std::size_t>(j * filter::moving + i)]) + (i == j ? 1.0 : 0.0);
+    }
+  }
+  noise.fill<N>(s.noise, t);
+}
+
+}  // namespace versine::fusion::detail

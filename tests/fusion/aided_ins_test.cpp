@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "versine/fusion/aided_ins.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "fusion/scenario.hpp"
+#include "versine/filter/consistency.hpp"
+
+namespace versine::fusion {
+namespace {
+using test::Scenario;
+using test::Simulated;
+
+AidedInsResult solve(const Simulated& run) {
+  SilentProgress progress;
+  SilentLog log;
+  auto r = run_aided_ins(run.input, run.options, progress, log);
+  if (!r) throw std::runtime_error(r.error().message());
+  return *r;
+}
+
+/// Largest error in sigmas (position, over all points), and whether everything is finite.
+double worst_ratio(const Scenario& s, const Simulated& run, const AidedInsResult& r, double* worst_position = nullptr) {
+  double worst = 0.0, position = 0.0;
+  for (std::size_t i = 0; i < r.solution.smoothed.size(); i += 20) {
+    const auto& p = r.solution.smoothed[i];
+    const auto e = test::error_at(p, test::truth_at(s, run.truth, (p.time - s.motion.epoch).seconds()));
+    const double ratio = std::sqrt(e.position.dot(p.position_covariance.matrix().inverse() * e.position));
+    if (!(ratio <= worst)) worst = ratio;
+    position = std::max(position, e.position.norm());
+  }
+  if (worst_position != nullptr) *worst_position = position;
+  return worst;
+}
+
+TEST(AidedIns, ErrorFreeMeasurementsGiveTheTruth) {
+  Scenario s{.noise = false};
+  Simulated run = test::make(s, 1);
+  run.options.initial_heading = 0.5;
+  const AidedInsResult r = solve(run);
+  ASSERT_EQ(r.solution.smoothed.size(), run.input.imu.size());
+  EXPECT_TRUE(r.solution.record.rejections.empty());
+  ASSERT_FALSE(r.standstills.empty());
+  for (std::size_t i = 0; i < r.solution.smoothed.size(); i += 50) {
+    const auto& p = r.solution.smoothed[i];
+    const auto e = test::error_at(p, test::truth_at(s, run.truth, (p.time - s.motion.epoch).seconds()));
+    ASSERT_LT(e.position.norm(), 2e-3) << i;
+    ASSERT_LT(e.attitude.norm(), 3e-4) << i;
+  }
+}
+
+TEST(AidedIns, BothSmoothersAgree) {
+  Simulated run = test::make({}, 2);
+  run.options.mounting_sigma = 0.01;
+  run.options.output_rate = 10.0;
+  run.options.chain_rate = 1.0;
+  const AidedInsResult a = solve(run);
+  run.options.smoother = SmootherKind::rauch_tung_striebel;
+  const AidedInsResult b = solve(run);
+  ASSERT_EQ(a.smoother_used, SmootherKind::bryson_frazier);
+  ASSERT_EQ(a.solution.smoothed.size(), b.solution.smoothed.size());
+  for (std::size_t i = 0; i < a.solution.smoothed.size(); ++i) {
+    const auto &p = a.solution.smoothed[i], &q = b.solution.smoothed[i];
+    const double sigma = std::sqrt(p.position_covariance.matrix().trace());
+    ASSERT_LT(geodesy::wgs84.ned_difference(p.position, q.position).norm(), 0.01 * sigma) << i;
+    ASSERT_NEAR(p.position_covariance.xx / q.position_covariance.xx, 1.0, 0.01) << i;
+    ASSERT_NEAR(p.attitude_covariance.zz / q.attitude_covariance.zz, 1.0, 0.01) << i;
+  }
+  ASSERT_EQ(a.solution.chain.size(), b.solution.chain.size());
+  const auto ca = a.solution.chain.cross_covariance(20, 23), cb = b.solution.chain.cross_covariance(20, 23);
+  EXPECT_LT((ca - cb).norm(), 0.01 * ca.norm());
+}
+
+TEST(AidedIns, SmoothedVariancesAreNeverAboveTheFilters) {
+  Simulated run = test::make({}, 3);
+  run.options.keep_forward = true;
+  run.options.output_rate = 10.0;
+  const AidedInsResult r = solve(run);
+  ASSERT_EQ(r.solution.smoothed.size(), r.solution.forward.size());
+  for (std::size_t i = 0; i < r.solution.smoothed.size(); ++i) {
+    const auto &s = r.solution.smoothed[i], &f = r.solution.forward[i];
+    for (const auto& [a, b] : {std::pair{s.position_covariance, f.position_covariance},
+                               {s.velocity_covariance, f.velocity_covariance},
+                               {s.attitude_covariance, f.attitude_covariance}}) {
+      ASSERT_LE(a.xx, b.xx * 1.0001f) << i;
+      ASSERT_LE(a.yy, b.yy * 1.0001f) << i;
+      ASSERT_LE(a.zz, b.zz * 1.0001f) << i;
+    }
+  }
+}
+
+TEST(AidedIns, HundredRunsAreConsistent) {
+  // NEES of the smoothed position, velocity and attitude at the middle, NIS of the sensors: inside 95 % bounds.
+  const Scenario base{
+      .motion = {.speed = 8.0, .swing = 3.0, .turn = 0.8, .climb = 0.02, .roll = 0.03, .period = 20.0, .still = 6.0},
+      .duration = 24.0,
+      .rate = 100.0};
+  double position = 0, velocity = 0, attitude = 0, nis = 0;
+  std::size_t rows = 0;
+  const int runs = 100;
+  for (int i = 0; i < runs; ++i) {
+    Simulated run = test::make(base, 1000 + unsigned(i));
+    run.options.odometer_scale_sigma = 0.004;
+    run.options.gate_probability = 1e-12;
+    run.options.odometer_random_walk = 1e-5;
+    run.options.zero_velocity = false;
+    const AidedInsResult r = solve(run);
+    const auto& p = r.solution.smoothed[1500];
+    const auto e = test::error_at(p, test::truth_at(base, run.truth, (p.time - base.motion.epoch).seconds()));
+    position += e.position.dot(p.position_covariance.matrix().inverse() * e.position);
+    velocity += e.velocity.dot(p.velocity_covariance.matrix().inverse() * e.velocity);
+    attitude += e.attitude.dot(p.attitude_covariance.matrix().inverse() * e.attitude);
+    for (const Innovation& v : r.solution.innovations) {
+      if (v.sensor != "gnss position" && v.sensor != "gnss velocity") continue;
+      nis += v.nis;
+      rows += std::size_t(v.value.size());
+    }
+  }
+  const filter::Bounds nees = filter::mean_chi_square_bounds(runs, 3.0),
+                       of_nis = filter::mean_chi_square_bounds(rows, 1.0);
+  RecordProperty("nees", std::to_string(position / (3 * runs)) + " " + std::to_string(velocity / (3 * runs)) + " " +
+                             std::to_string(attitude / (3 * runs)));
+  for (const double mean : {position / (3 * runs), velocity / (3 * runs), attitude / (3 * runs)}) {
+    EXPECT_GT(mean, nees.lower);
+    EXPECT_LT(mean, nees.upper);
+  }
+  // The first fix of each run also gave the start (its variance counted 25 times): that is 1 of 24 epochs.
+  EXPECT_GT(nis / double(rows), of_nis.lower - 0.03);
+  EXPECT_LT(nis / double(rows), of_nis.upper);
+}
+
+TEST(AidedIns, FaultGapOfTwoSecondsStartsASegment) {
+  const Scenario s;
+  Simulated run = test::make(s, 5);
+  auto& imu = run.input.imu.samples;
+  const auto first = imu.begin() + 14000;
+  imu.erase(first, first + 400);
+  const AidedInsResult r = solve(run);
+  ASSERT_EQ(r.segments.size(), 2u);
+  double position = 0;
+  EXPECT_LT(worst_ratio(s, run, r, &position), 4.5);
+  EXPECT_LT(position, 0.2);
+  EXPECT_EQ(r.solution.smoothed.samples.back().segment, 1);
+}
+
+TEST(AidedIns, FaultFiveOutliersAreRejectedAndRecorded) {
+  const Scenario s;
+  Simulated run = test::make(s, 6);
+  for (std::size_t i = 60; i < 65; ++i) {
+    run.input.gnss[i].position = geodesy::wgs84.displaced(run.input.gnss[i].position, {1.5, 1.6, 0.0});
+  }
+  const AidedInsResult r = solve(run);
+  std::size_t rejected = 0;
+  for (const Rejection& x : r.solution.record.rejections) rejected += x.sensor == "gnss position" ? 1u : 0u;
+  EXPECT_EQ(rejected, 5u);
+  EXPECT_LT(worst_ratio(s, run, r), 4.5);
+}
+
+TEST(AidedIns, FaultGnssStampsOffTheImuEpochsCostNothing) {
+  Scenario s{.gnss_shift = 0.0009, .noise = false};
+  s.motion.speed = 20.0;
+  Simulated run = test::make(s, 7);
+  run.options.initial_heading = 0.5;
+  for (auto& g : run.input.gnss.samples) g.sigma_ned.setConstant(0.002);
+  double position = 0;
+  worst_ratio(s, run, solve(run), &position);
+  EXPECT_LT(position, 2e-3);  // 18 mm if the state were not brought to the stamp
+}
+
+TEST(AidedIns, FaultNotANumberInGnssIsRejected) {
+  const Scenario s;
+  Simulated run = test::make(s, 8);
+  run.input.gnss[50].position.height = std::nan("");
+  const AidedInsResult r = solve(run);
+  EXPECT_FALSE(r.solution.record.rejections.empty());
+  EXPECT_LT(worst_ratio(s, run, r), 4.5);
+}
+
+TEST(AidedIns, OutageIsBridgedByOdometerAndConstraint) {
+  Scenario s;
+  s.wheel_lever.setZero();
+  s.duration = 160.0;
+  Simulated run = test::make(s, 9);
+  run.options.constraint = true;
+  std::erase_if(run.input.gnss.samples, [&](const auto& g) {
+    const double t = (g.time - s.motion.epoch).seconds();
+    return t > 80 && t < 140;
+  });
+  const AidedInsResult r = solve(run);
+  double with = 0, without = 0;
+  EXPECT_LT(worst_ratio(s, run, r, &with), 4.5);
+  const float scale = r.solution.sensor_errors.back().value[12];
+  EXPECT_EQ(r.solution.error_names[12], "odometer_scale");
+  EXPECT_NEAR(scale, s.odometer_scale, 4.0 * double(r.solution.sensor_errors.back().sigma[12]));
+  run.options.constraint = false;
+  run.input.odometer.samples.clear();
+  EXPECT_LT(worst_ratio(s, run, solve(run), &without), 4.5);
+  EXPECT_LT(with, 0.3 * without);
+  EXPECT_LT(with, 0.25);
+}
+
+TEST(AidedIns, CourseGivesTheHeading) {
+  Scenario s;
+  Simulated run = test::make(s, 10);
+  run.options.heading_source = HeadingSource::automatic;
+  run.options.initial_heading.reset();
+  const AidedInsResult r = solve(run);
+  EXPECT_EQ(r.segments[0].alignment.method, "course");
+  EXPECT_NEAR(geodesy::to_euler(r.segments[0].alignment.q_nb).yaw, 0.5, 4.0 * r.segments[0].alignment.sigma.z());
+  EXPECT_LT(worst_ratio(s, run, r), 4.5);
+}
+
+TEST(AidedIns, GyrocompassIsRefinedByTheFilter) {
+  Scenario s{.errors = sensors::find_imu_grade("navigation-rlg")->errors};
+  s.motion.still = 200.0;
+  s.duration = 220.0;
+  s.rate = 100.0;
+  Simulated run = test::make(s, 11);
+  run.options.heading_source = HeadingSource::gyrocompass;
+  const AidedInsResult r = solve(run);
+  ASSERT_TRUE(r.segments[0].fine_sigma.has_value());
+  const double sigma = r.segments[0].fine_sigma->z();
+  EXPECT_LT(sigma, 0.15 * units::deg);
+  EXPECT_LT(std::abs(r.segments[0].fine_attitude->yaw - 0.5), 4.0 * sigma);
+}
+
+TEST(AidedIns, DeadReckoningFollowsTheSmoothedWay) {
+  Scenario s;
+  Simulated run = test::make(s, 12);
+  run.options.dead_reckoning = true;
+  const AidedInsResult r = solve(run);
+  ASSERT_TRUE(r.dead_reckoned.has_value());
+  const auto& p = r.dead_reckoned->samples.back();
+  const auto e = test::error_at(p, test::truth_at(s, run.truth, (p.time - s.motion.epoch).seconds()));
+  EXPECT_LT(e.position.norm(), 1.5);  // 700 m of way, heading known to about 1 mrad
+}
+
+TEST(AidedIns, NothingThatTellsPositionIsAnError) {
+  Simulated run = test::make({.duration = 10.0}, 13);
+  run.input.gnss.samples.clear();
+  SilentProgress progress;
+  SilentLog log;
+  const auto r = run_aided_ins(run.input, run.options, progress, log);
+  ASSERT_FALSE(r);
+  EXPECT_NE(r.error().advice.find("initial position"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace versine::fusion
