@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+import { getSeries } from './api';
+import type { Series } from './contract';
+
+/** Beyond this many samples the browser asks the server for what it draws instead of holding everything. */
+export const clientLimit = 500_000;
+const factor = 4;
+const maxBuckets = 2400;
+
+/** Smallest of mins and lowers, largest of maxs and uppers of `factor` neighbours; NaN only where all are. */
+function reduce(series: Series): Series {
+  const n = Math.ceil(series.x.length / factor);
+  const out: Series = {
+    x: new Float64Array(n),
+    min: new Float32Array(n),
+    max: new Float32Array(n),
+    lower: series.lower && new Float32Array(n),
+    upper: series.upper && new Float32Array(n),
+  };
+  const fold = (from: Float32Array, to: Float32Array, smaller: boolean) => {
+    for (let i = 0; i < n; ++i) {
+      let best = NaN;
+      const end = Math.min(from.length, (i + 1) * factor);
+      for (let k = i * factor; k < end; ++k) {
+        const v = from[k];
+        if (v === v && (best !== best || (smaller ? v < best : v > best))) best = v;
+      }
+      to[i] = best;
+    }
+  };
+  for (let i = 0; i < n; ++i) out.x[i] = series.x[i * factor];
+  fold(series.min, out.min, true);
+  fold(series.max, out.max, false);
+  if (series.lower && out.lower) fold(series.lower, out.lower, true);
+  if (series.upper && out.upper) fold(series.upper, out.upper, false);
+  return out;
+}
+
+export function lowerBound(x: Float64Array, value: number): number {
+  let low = 0;
+  let high = x.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (x[middle] < value) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+function slice(series: Series, from: number, to: number): Series {
+  const a = Math.max(0, lowerBound(series.x, from) - 1);
+  const b = Math.min(series.x.length, lowerBound(series.x, to) + 1);
+  return {
+    x: series.x.subarray(a, b),
+    min: series.min.subarray(a, b),
+    max: series.max.subarray(a, b),
+    lower: series.lower && series.lower.subarray(a, b),
+    upper: series.upper && series.upper.subarray(a, b),
+  };
+}
+
+/** One strip's values at every zoom. */
+export class SeriesStore {
+  private levels: Series[] = [];
+
+  constructor(
+    readonly id: string,
+    private readonly count: number,
+  ) {}
+
+  get whole(): boolean {
+    return this.count <= clientLimit;
+  }
+
+  async load(): Promise<void> {
+    if (!this.whole) return;
+    this.levels = [await getSeries(this.id)];
+    while (this.levels[this.levels.length - 1].x.length > maxBuckets) {
+      this.levels.push(reduce(this.levels[this.levels.length - 1]));
+    }
+  }
+
+  /** What to draw between two distances: at most about 2,400 buckets, or the samples themselves. */
+  async view(from: number, to: number): Promise<Series> {
+    if (!this.whole) return getSeries(this.id, from, to, maxBuckets);
+    return this.viewNow(from, to);
+  }
+
+  viewNow(from: number, to: number): Series {
+    for (const level of this.levels) {
+      const part = slice(level, from, to);
+      if (part.x.length <= maxBuckets) return part;
+    }
+    return slice(this.levels[this.levels.length - 1], from, to);
+  }
+
+  /** The sample nearest to a distance: value and half width of its 95 % interval. Only of a whole store. */
+  at(x: number): { value: number; half: number } | null {
+    const s = this.levels[0];
+    if (!s || s.x.length === 0) return null;
+    let i = Math.min(lowerBound(s.x, x), s.x.length - 1);
+    if (i > 0 && x - s.x[i - 1] < s.x[i] - x) i -= 1;
+    const half = s.lower && s.upper ? (s.upper[i] - s.lower[i]) / 2 : NaN;
+    return { value: s.min[i], half };
+  }
+
+  samples(from: number, to: number): Series {
+    return slice(this.levels[0], from, to);
+  }
+}
