@@ -11,23 +11,19 @@ namespace versine::cli {
 
 /// Exit codes of every command.
 enum Exit : int {
-  good = 0,        ///< done
+  good = 0,          ///< done
   unacceptable = 1,  ///< the job ran and found the result unacceptable
-  bad_input = 2,   ///< a file, a key or an argument is wrong
-  internal = 3,    ///< a fault of Versine's own
+  bad_input = 2,     ///< a file, a key or an argument is wrong
+  internal = 3,      ///< a fault of Versine's own
 };
 
-/// A sub-command: `add` declares its options on the application; the callback it leaves there returns the exit code
-/// through `exit`.
-struct Command {
-  void (*add)(CLI::App& app, int& exit);
-};
-
-/// All commands, in the order of the help. A new command is one file in commands/ and one line in main.cpp.
-void add_alignment(CLI::App& app, int& exit);
+/// All commands. Each declares its options and leaves a callback that sets `exit`. A new command is one file in
+/// commands/, its line here and its place in main.cpp's list, which is the order of the help.
 void add_check(CLI::App& app, int& exit);
 void add_init(CLI::App& app, int& exit);
 void add_simulate(CLI::App& app, int& exit);
+void add_survey(CLI::App& app, int& exit);
+void add_alignment(CLI::App& app, int& exit);
 
 /// Options that every job command has.
 struct JobOptions {

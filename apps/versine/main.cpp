@@ -3,6 +3,7 @@
 #include <exception>
 
 #include "command.hpp"
+#include "versine/app/version.hpp"
 
 namespace versine::cli {
 
@@ -26,14 +27,15 @@ int report(const Error& error) {
 
 int main(int argc, char** argv) {
   using namespace versine::cli;
-  CLI::App app{"Versine turns recordings from rails into positions and track geometry, with the uncertainty of every "
-               "number.\n\nStart with a template:  versine init survey > job.toml\nthen:                   versine "
-               "check job.toml && versine survey job.toml"};
-  app.set_version_flag("--version", std::string("versine ") + VERSINE_VERSION);
+  CLI::App app{
+      "Versine turns recordings from rails into positions and track geometry, with the uncertainty of every "
+      "number.\n\nStart with a template:  versine init survey > job.toml\nthen:                   versine "
+      "check job.toml && versine survey job.toml"};
+  app.set_version_flag("--version", "versine " + versine::app::version());
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
   int exit = good;
-  for (const auto add : {add_init, add_check, add_alignment, add_simulate}) add(app, exit);
+  for (const auto add : {add_init, add_check, add_simulate, add_survey, add_alignment}) add(app, exit);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

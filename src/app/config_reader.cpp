@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <toml++/toml.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <set>
 #include <sstream>
-#include <toml++/toml.h>
 
 #include "versine/app/config.hpp"
 #include "versine/core/text.hpp"
@@ -214,8 +214,8 @@ class TomlReader final : public ConfigVisitor {
     std::string range = spec.positive && !(spec.min > 0.0) ? "more than 0" : "";
     if (std::isfinite(spec.min) && !(spec.positive && spec.min <= 0.0)) range = fmt::format("at least {}", spec.min);
     if (std::isfinite(spec.max)) range += fmt::format("{}at most {}", range.empty() ? "" : " and ", spec.max);
-    wrong(key, node, fmt::format("{}{}{}", range.empty() ? "a finite number" : range, spec.unit.empty() ? "" : " ",
-                                 spec.unit));
+    wrong(key, node,
+          fmt::format("{}{}{}", range.empty() ? "a finite number" : range, spec.unit.empty() ? "" : " ", spec.unit));
   }
   bool number(std::string_view key, const toml::node& node, const KeySpec& spec, double& v) {
     const auto x = node.is_number() ? node.value<double>() : std::nullopt;
@@ -264,7 +264,9 @@ Error first_of(std::vector<Error> errors) {
 /// Puts `a.b.c = value` into the table, making the tables on the way.
 Expected<void> apply_override(toml::table& root, const std::string& text) {
   const auto refuse = [&](std::string why) {
-    return fail({.field = "--set " + text, .found = std::move(why), .expected = "key=value, the value as TOML writes it",
+    return fail({.field = "--set " + text,
+                 .found = std::move(why),
+                 .expected = "key=value, the value as TOML writes it",
                  .advice = "for example --set output.rate_hz=10 or --set imu.axes='\"right-forward-up\"'"});
   };
   const auto equals = text.find('=');
@@ -302,8 +304,11 @@ Expected<void> parse_config(std::string_view text, const std::filesystem::path& 
   try {
     root = toml::parse(text, std::string_view(path.native()));
   } catch (const toml::parse_error& error) {
-    return fail({.file = path.string(), .line = error.source().begin.line, .found = std::string(error.description()),
-                 .expected = "a TOML file", .advice = "see docs/ for the job's keys, or 'versine init' for a template"});
+    return fail({.file = path.string(),
+                 .line = error.source().begin.line,
+                 .found = std::string(error.description()),
+                 .expected = "a TOML file",
+                 .advice = "see docs/ for the job's keys, or 'versine init' for a template"});
   }
   for (const auto& text_override : overrides) {
     if (auto done = apply_override(root, text_override); !done) return done;
@@ -323,7 +328,9 @@ Expected<void> read_config(const std::filesystem::path& path, const Description&
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;
   if (!std::filesystem::is_regular_file(path) || !(text << stream.rdbuf())) {
-    return fail({.file = path.string(), .found = "no file that can be read", .expected = "a job file in TOML",
+    return fail({.file = path.string(),
+                 .found = "no file that can be read",
+                 .expected = "a job file in TOML",
                  .advice = "'versine init survey > job.toml' writes a commented template"});
   }
   return parse_config(text.str(), path, description, overrides);

@@ -20,7 +20,9 @@ struct KeyText {
   const KeySpec& spec;
 };
 
-std::string toml_text(const std::string& text) { return nlohmann::json(text).dump(); }
+std::string toml_text(const std::string& text) {
+  return nlohmann::json(text).dump();
+}
 
 std::string shortest(double x) {
   const std::string text = fmt::format("{:.10g}", x);
@@ -154,13 +156,14 @@ class TemplateWriter final : public TextVisitor {
     }
     if (key.type.starts_with("one of")) note += fmt::format(" {}", key.type);
     const std::string shown = !key.spec.example.empty() ? std::string(key.spec.example) : key.value;
-    rows_ += fmt::format("# {}\n{}{} = {}\n", note, key.spec.required ? "" : "# ", key.key,
-                         shown.empty() ? "..." : shown);
+    rows_ +=
+        fmt::format("# {}\n{}{} = {}\n", note, key.spec.required ? "" : "# ", key.key, shown.empty() ? "..." : shown);
     required_ = required_ || key.spec.required;
   }
   void items(std::string_view key, std::string_view doc, std::size_t,
              const std::function<void(ConfigVisitor&, std::size_t)>& body) override {
-    sub(key, fmt::format("[[{}{}]]", path_, key), doc,
+    sub(
+        key, fmt::format("[[{}{}]]", path_, key), doc,
         [&](ConfigVisitor& v) { body(v, std::numeric_limits<std::size_t>::max()); }, true);
   }
 

@@ -22,12 +22,12 @@ namespace versine::app {
 
 /// What a key is, besides its name and place.
 struct KeySpec {
-  std::string_view doc;          ///< one sentence: what it means, what it changes
-  std::string_view unit = "";    ///< of the number as the user writes it; the key's name ends in it too
-  double scale = 1.0;            ///< value inside = value written * scale (units.hpp)
+  std::string_view doc;        ///< one sentence: what it means, what it changes
+  std::string_view unit = "";  ///< of the number as the user writes it; the key's name ends in it too
+  double scale = 1.0;          ///< value inside = value written * scale (units.hpp)
   double min = -std::numeric_limits<double>::infinity();  ///< as written, inclusive
   double max = std::numeric_limits<double>::infinity();
-  bool positive = false;         ///< zero is refused too
+  bool positive = false;  ///< zero is refused too
   bool required = false;
   std::string_view example = "";  ///< shown in a template when there is no default worth showing
 };

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "versine/app/survey_config.hpp"
+#include "versine/app/survey_input.hpp"
+#include "versine/app/withhold.hpp"
+#include "versine/core/progress.hpp"
+#include "versine/fusion/aided_ins.hpp"
+
+/// `versine survey`: from a recording to a trajectory with its uncertainty.
+namespace versine::app {
+
+struct SurveyResult {
+  SurveyInput input;
+  fusion::AidedInsResult estimate;
+  std::optional<WithheldErrors> withheld;
+  std::vector<std::pair<std::string, double>> timings_s;
+};
+
+/// All stages up to the solution: read, check, align, forward pass, smoother. Nothing is written.
+[[nodiscard]] Expected<SurveyResult> compute_survey(const SurveyConfig& config, const std::filesystem::path& job,
+                                                    Progress& progress, Log& log);
+
+/// Runs a job: computes and writes the result folder. `output` overrides the job's folder when not empty.
+struct SurveyRun {
+  std::filesystem::path folder;
+  std::string summary_json;  ///< as in run.json
+  std::string summary_text;  ///< for a person
+};
+[[nodiscard]] Expected<SurveyRun> run_survey(const std::filesystem::path& job, std::span<const std::string> overrides,
+                                             const std::filesystem::path& output, Progress& progress, Log& log);
+
+}  // namespace versine::app

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "versine/app/recording_config.hpp"
+#include "versine/fusion/aided_ins.hpp"
+
+/// What a survey job says: `[imu]`, `[gnss]`, ... as in docs/job-survey.md, which is made from `describe`.
+namespace versine::app {
+
+enum class SurveyMethod { aided_ins, landmark };
+
+struct SurveyConfig {
+  std::string job = "survey";
+  std::string title;
+  SurveyMethod method = SurveyMethod::aided_ins;
+
+  ImuFileConfig imu;
+  ImuErrorsConfig imu_errors;
+  std::optional<double> max_tilt;  ///< rad; gravity further from the IMU's down axis is an error in axes
+  GnssFileConfig gnss;
+  bool fixed_only = false;
+  std::vector<OdometerFileConfig> odometers;
+  SpeedFileConfig speed;
+  HeadingFileConfig heading;
+  LandmarkFileConfig landmarks;
+
+  /// Everything the estimator wants to know; the keys of the job write straight into it.
+  fusion::AidedInsOptions estimator;
+  std::vector<double> initial_position;  ///< deg, deg, m
+
+  struct Output {
+    std::string folder;
+    std::string crs;
+    bool csv = true;
+    bool hdf5 = true;
+    bool innovations = true;
+  } output;
+
+  /// GNSS left out in windows, and compared with the solution.
+  struct Withhold {
+    double window = 0.0;  ///< s; 0: none
+    double every = 0.0;   ///< s between the starts of two windows
+    double start = 60.0;  ///< s after the first epoch
+  } withhold;
+};
+
+void describe(ConfigVisitor& v, SurveyConfig& c);
+
+/// Reads a survey job.
+[[nodiscard]] Expected<SurveyConfig> read_survey_config(const std::filesystem::path& job,
+                                                        std::span<const std::string> overrides = {});
+
+}  // namespace versine::app

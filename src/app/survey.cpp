@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "versine/app/survey.hpp"
+
+#include <chrono>
+
+#include "versine/app/survey_output.hpp"
+#include "versine/app/withhold.hpp"
+
+namespace versine::app {
+
+namespace {
+
+/// Wall time of each stage, for run.json.
+class Stopwatch {
+ public:
+  explicit Stopwatch(std::vector<std::pair<std::string, double>>& timings) : timings_(timings) {}
+  void stage(std::string name) {
+    const auto now = std::chrono::steady_clock::now();
+    timings_.emplace_back(std::move(name), std::chrono::duration<double>(now - last_).count());
+    last_ = now;
+  }
+
+ private:
+  std::vector<std::pair<std::string, double>>& timings_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+fusion::AidedInsInput estimator_input(const SurveyInput& input) {
+  fusion::AidedInsInput out;
+  out.imu = input.imu.series;
+  out.gnss = input.gnss;
+  if (!input.odometers.empty()) out.odometer = input.odometers.front();
+  out.speed = input.speed;
+  out.landmarks = input.landmarks;
+  out.heading = input.heading;
+  for (std::size_t i = 1; i < input.imu.segments.size(); ++i) {
+    out.segment_starts.push_back(input.imu.series[input.imu.segments[i].begin].time);
+  }
+  return out;
+}
+
+}  // namespace
+
+Expected<SurveyResult> compute_survey(const SurveyConfig& config, const std::filesystem::path& job, Progress& progress,
+                                      Log& log) {
+  SurveyResult result;
+  Stopwatch watch(result.timings_s);
+  auto input = read_survey_input(config, job, progress);
+  if (!input) return tl::unexpected(input.error());
+  watch.stage("read and check");
+
+  fusion::AidedInsInput estimator = estimator_input(*input);
+  Series<sensors::GnssSample> hidden;
+  if (config.withhold.window > 0.0) hidden = withhold(estimator.gnss, config.withhold);
+  auto solved = fusion::run_aided_ins(estimator, config.estimator, progress, log);
+  if (!solved) return tl::unexpected(solved.error());
+  if (!hidden.empty()) {
+    result.withheld = compare_withheld(hidden, solved->solution.smoothed, config.estimator.gnss_lever.l_b);
+  }
+  watch.stage("align, filter and smooth");
+  result.input = std::move(*input);
+  result.estimate = std::move(*solved);
+  return result;
+}
+
+Expected<SurveyRun> run_survey(const std::filesystem::path& job, std::span<const std::string> overrides,
+                               const std::filesystem::path& output, Progress& progress, Log& log) {
+  auto config = read_survey_config(job, overrides);
+  if (!config) return tl::unexpected(config.error());
+  std::filesystem::path folder = output;
+  if (folder.empty()) {
+    folder = config->output.folder.empty() ? std::filesystem::path(job).replace_extension(".result")
+                                           : job.parent_path() / config->output.folder;
+  }
+  auto writer = io::ResultFolder::create(folder);
+  if (!writer) return tl::unexpected(writer.error());
+  auto result = compute_survey(*config, job, progress, log);
+  if (!result) return tl::unexpected(result.error());
+  return write_survey(*config, *result, *writer, progress);
+}
+
+}  // namespace versine::app

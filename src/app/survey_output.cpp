@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "versine/app/survey_output.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "versine/app/version.hpp"
+#include "versine/core/units.hpp"
+#include "versine/io/write_trajectory.hpp"
+
+namespace versine::app {
+
+namespace {
+using json = nlohmann::ordered_json;
+
+/// Numbers of a run that a person asks for first.
+json summary_of(const SurveyConfig& config, const SurveyResult& result, const std::string& crs) {
+  const auto& estimate = result.estimate;
+  const auto& track = estimate.solution.smoothed;
+  json out;
+  if (!config.title.empty()) out["title"] = config.title;
+  out["points"] = track.size();
+  out["duration_s"] = (track.back().time - track.front().time).seconds();
+  double length = 0.0, worst_h = 0.0, worst_v = 0.0, sum_h = 0.0;
+  for (std::size_t i = 0; i < track.size(); ++i) {
+    const auto& p = track[i];
+    if (i > 0 && p.segment == track[i - 1].segment) {
+      length += 0.5 * (p.v_eb_n + track[i - 1].v_eb_n).norm() * (p.time - track[i - 1].time).seconds();
+    }
+    const double h2 = p.position_covariance.xx + p.position_covariance.yy;
+    sum_h += h2;
+    worst_h = std::max(worst_h, std::sqrt(h2));
+    worst_v = std::max(worst_v, std::sqrt(double{p.position_covariance.zz}));
+  }
+  out["length_m"] = length;
+  out["crs"] = crs;
+  out["sigma_horizontal_rms_m"] = std::sqrt(sum_h / static_cast<double>(track.size()));
+  out["sigma_horizontal_max_m"] = worst_h;
+  out["sigma_vertical_max_m"] = worst_v;
+  for (const auto& s : estimate.segments) {
+    const geodesy::Euler e =
+        geodesy::to_euler(s.fine_attitude ? geodesy::to_quaternion(*s.fine_attitude) : s.alignment.q_nb);
+    const Eigen::Vector3d sigma = s.fine_sigma.value_or(s.alignment.sigma);
+    out["segments"].push_back({{"from_s", s.from.seconds()},
+                               {"to_s", s.to.seconds()},
+                               {"alignment", s.alignment.method},
+                               {"roll_deg", e.roll / units::deg},
+                               {"pitch_deg", e.pitch / units::deg},
+                               {"heading_deg", e.yaw / units::deg},
+                               {"sigma_level_deg", sigma.head<2>().maxCoeff() / units::deg},
+                               {"sigma_heading_deg", sigma.z() / units::deg}});
+  }
+  for (const auto& s : estimate.statistics) {
+    out["innovations"].push_back({{"sensor", s.sensor},
+                                  {"used", s.used},
+                                  {"rejected", s.rejected},
+                                  {"mean_nis_per_row", s.mean_nis_per_row},
+                                  {"lower", s.lower},
+                                  {"upper", s.upper}});
+  }
+  const auto& errors = estimate.solution.sensor_errors;
+  if (!errors.empty()) {
+    for (std::size_t i = 0; i < estimate.solution.error_names.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      out["sensor_errors_at_end"][estimate.solution.error_names[i]] = {{"value", errors.back().value(k)},
+                                                                       {"sigma", errors.back().sigma(k)}};
+    }
+  }
+  if (result.withheld) {
+    const WithheldErrors& w = *result.withheld;
+    out["withheld"] = {{"window_s", config.withhold.window},
+                       {"windows", w.windows},
+                       {"epochs", w.count},
+                       {"rms_horizontal_m", w.rms_horizontal},
+                       {"p95_horizontal_m", w.p95_horizontal},
+                       {"max_horizontal_m", w.max_horizontal},
+                       {"rms_vertical_m", w.rms_vertical},
+                       {"coverage95", w.coverage}};
+  }
+  return out;
+}
+
+std::string text_of(const SurveyResult& result, const json& s) {
+  std::string text = fmt::format("{:.1f} s, {:.1f} m, {} points; sigma horizontal {:.4g} m (max {:.4g} m)\n",
+                                 s["duration_s"].get<double>(), s["length_m"].get<double>(), s["points"].get<int>(),
+                                 s["sigma_horizontal_rms_m"].get<double>(), s["sigma_horizontal_max_m"].get<double>());
+  for (const auto& i : s.value("innovations", json::array())) {
+    text += fmt::format("  {}: {} used, {} rejected, mean NIS {:.2f} ({:.2f} to {:.2f})\n",
+                        i["sensor"].get<std::string>(), i["used"].get<int>(), i["rejected"].get<int>(),
+                        i["mean_nis_per_row"].get<double>(), i["lower"].get<double>(), i["upper"].get<double>());
+  }
+  for (const Finding& f : result.input.record.findings) {
+    text += fmt::format("  {}: {} x {}, {}\n", f.sensor, f.count, f.kind, to_string(f.action));
+  }
+  for (const auto& warning : result.estimate.solution.record.warnings) text += "  warning: " + warning + "\n";
+  if (s.contains("withheld")) {
+    const auto& w = s["withheld"];
+    text += fmt::format(
+        "  withheld {:g} s: {} windows, horizontal RMS {:.3f} m, 95 % {:.3f} m, max {:.3f} m, "
+        "coverage {:.1f} %\n",
+        w["window_s"].get<double>(), w["windows"].get<int>(), w["rms_horizontal_m"].get<double>(),
+        w["p95_horizontal_m"].get<double>(), w["max_horizontal_m"].get<double>(),
+        100.0 * w["coverage95"].get<double>());
+  }
+  return text;
+}
+
+Expected<geodesy::Projection> project_crs(const SurveyConfig& config, const geodesy::Trajectory& track) {
+  if (config.output.crs.empty()) return geodesy::Projection::utm(track.front().position);
+  auto projection = geodesy::Projection::create(config.output.crs);
+  if (!projection) projection.error().field = "output.crs";
+  return projection;
+}
+
+}  // namespace
+
+Expected<SurveyRun> write_survey(const SurveyConfig& config, SurveyResult& result, io::ResultFolder& folder,
+                                 Progress& progress) {
+  auto& solution = result.estimate.solution;
+  if (solution.smoothed.empty()) {
+    return fail({.found = "a solution without any point",
+                 .expected = "at least one second of IMU data",
+                 .advice = "'versine info' on the IMU's file shows what it holds"});
+  }
+  const auto projection = project_crs(config, solution.smoothed);
+  if (!projection) return tl::unexpected(projection.error());
+  const io::TrajectoryOutput output{.projection = &*projection};
+
+  const auto started = std::chrono::steady_clock::now();
+  std::vector<std::function<Expected<void>()>> writers;
+  if (config.output.csv) {
+    writers.emplace_back(
+        [&] { return io::write_trajectory_csv(folder.path("trajectory.csv"), solution.smoothed, output); });
+    if (!solution.forward.empty()) {
+      writers.emplace_back(
+          [&] { return io::write_trajectory_csv(folder.path("forward.csv"), solution.forward, output); });
+    }
+    if (result.estimate.dead_reckoned) {
+      writers.emplace_back([&] {
+        return io::write_trajectory_csv(folder.path("dead_reckoning.csv"), *result.estimate.dead_reckoned, output);
+      });
+    }
+  }
+  if (config.output.hdf5) {
+    writers.emplace_back([&] { return io::write_solution_hdf5(folder.path("trajectory.h5"), solution, output); });
+  }
+  if (config.output.innovations) {
+    writers.emplace_back([&] {
+      return io::write_innovations_csv(folder.path("innovations.csv"), solution.innovations, solution.smoothed.scale);
+    });
+  }
+  RunRecord record = std::move(result.input.record);
+  record.append(solution.record);
+  writers.emplace_back([&] {
+    return io::write_rejections_csv(folder.path("rejections.csv"), record.rejections, solution.smoothed.scale);
+  });
+  for (std::size_t i = 0; i < writers.size(); ++i) {
+    progress.report("writing", static_cast<double>(i) / static_cast<double>(writers.size()));
+    if (progress.cancelled()) return fail({.found = "cancelled"});
+    if (auto done = writers[i](); !done) return tl::unexpected(done.error());
+  }
+  result.timings_s.emplace_back("write",
+                                std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count());
+
+  result.input.record = record;
+  const json summary = summary_of(config, result, projection->definition());
+  SurveyConfig described = config;
+  io::Run run;
+  run.command = "survey";
+  run.version = version();
+  run.started_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  run.time_scale = solution.smoothed.scale;
+  run.inputs = result.input.files;
+  run.settings_json = config_json([&](ConfigVisitor& v) { describe(v, described); });
+  run.timings_s = result.timings_s;
+  run.results_json = summary.dump();
+  run.record = std::move(record);
+  if (auto done = io::write_run_json(folder.path("run.json"), run); !done) return tl::unexpected(done.error());
+  if (auto done = folder.commit(); !done) return tl::unexpected(done.error());
+  progress.report("writing", 1.0);
+  return SurveyRun{folder.target(), summary.dump(2), text_of(result, summary)};
+}
+
+}  // namespace versine::app
