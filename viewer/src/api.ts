@@ -68,3 +68,9 @@ export async function putConstraints(body: unknown): Promise<void> {
     body: JSON.stringify(body),
   });
 }
+
+/** Opens the report in a tab of its own. A link could not send the token, so the page fetches it. */
+export async function openReport(): Promise<void> {
+  const text = await getText('api/report');
+  open(URL.createObjectURL(new Blob([text], { type: 'text/html' })), '_blank');
+}

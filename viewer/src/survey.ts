@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import { openReport } from './api';
 import { Chainage } from './chainage';
 import type { Result, StripInfo, Survey } from './contract';
 import { ExceedanceTable } from './exceedances';
@@ -88,7 +89,8 @@ export class SurveyScreen {
     theme.addEventListener('click', () => this.retheme());
     const help = element('button', { type: 'button' }, 'Keys ?');
     help.addEventListener('click', showHelp);
-    const report = element('a', { href: 'report.html', target: '_blank', class: 'button' }, 'Report P');
+    const report = element('button', { type: 'button' }, 'Report P');
+    report.addEventListener('click', () => void openReport());
     report.hidden = !this.result.report;
     header.append(element('h1', {}, this.result.title), verdict, element('span', { class: 'subtitle' }, this.result.subtitle), this.readout, theme, help, report);
 
@@ -186,7 +188,7 @@ export class SurveyScreen {
       g: () => this.askPlace(),
       m: () => this.marks.add(view.cursor),
       d: () => this.retheme(),
-      p: () => this.result.report && open('report.html', '_blank'),
+      p: () => this.result.report && openReport(),
       e: () => exportPng(this.visible(), this.result.title),
       c: () => exportCsv(this.visible(), view, this.chainage, this.result.title),
       '?': showHelp,
