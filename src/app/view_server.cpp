@@ -101,16 +101,16 @@ struct ViewServer::Impl {
     server.Get("/api/result", [this](const httplib::Request&, httplib::Response& response) {
       response.set_content(content.result_json(), "application/json");
     });
-    server.Get(R"(/api/series/([A-Za-z0-9_:.%-]+))", [this](const httplib::Request& request,
-                                                            httplib::Response& response) {
-      constexpr double infinity = std::numeric_limits<double>::infinity();
-      const double buckets = number(request, "buckets").value_or(0.0);
-      const auto body = content.series(request.matches[1].str(), number(request, "from").value_or(-infinity),
-                                       number(request, "to").value_or(infinity),
-                                       buckets > 0.0 && buckets <= 1e7 ? static_cast<std::size_t>(buckets) : 0);
-      if (!body) return refuse(response, 404, "no such series in this result");
-      response.set_content(*body, "application/octet-stream");
-    });
+    server.Get(
+        R"(/api/series/([A-Za-z0-9_:.%-]+))", [this](const httplib::Request& request, httplib::Response& response) {
+          constexpr double infinity = std::numeric_limits<double>::infinity();
+          const double buckets = number(request, "buckets").value_or(0.0);
+          const auto body = content.series(request.matches[1].str(), number(request, "from").value_or(-infinity),
+                                           number(request, "to").value_or(infinity),
+                                           buckets > 0.0 && buckets <= 1e7 ? static_cast<std::size_t>(buckets) : 0);
+          if (!body) return refuse(response, 404, "no such series in this result");
+          response.set_content(*body, "application/octet-stream");
+        });
     // The report needs the token, too; a link cannot send a header, so the page fetches it and opens it as a blob.
     server.Get("/api/report", [this](const httplib::Request&, httplib::Response& response) {
       const auto text = content.report ? content.report() : std::nullopt;
@@ -161,7 +161,8 @@ struct ViewServer::Impl {
 
 Expected<ViewServer> ViewServer::start(ViewContent content, ViewAddress address) {
   if (view_assets().empty()) {
-    return fail({.found = "a program that was built without the viewer", .expected = "one with it",
+    return fail({.found = "a program that was built without the viewer",
+                 .expected = "one with it",
                  .advice = "build again with node and npm installed (VERSINE_VIEWER=ON), or use versine report"});
   }
   auto impl = std::make_unique<Impl>();
@@ -177,8 +178,10 @@ Expected<ViewServer> ViewServer::start(ViewContent content, ViewAddress address)
     impl->port = impl->server.bind_to_any_port(host);
   }
   if (impl->port <= 0) {
-    return fail({.field = "port", .found = fmt::format("{} is taken or not permitted", address.port),
-                 .expected = "a free port", .advice = "leave --port away to take any free one"});
+    return fail({.field = "port",
+                 .found = fmt::format("{} is taken or not permitted", address.port),
+                 .expected = "a free port",
+                 .advice = "leave --port away to take any free one"});
   }
   impl->thread = std::thread([server = &impl->server] { server->listen_after_bind(); });
   while (!impl->server.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -189,9 +192,15 @@ ViewServer::ViewServer(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 ViewServer::ViewServer(ViewServer&&) noexcept = default;
 ViewServer::~ViewServer() = default;
 
-std::string ViewServer::url() const { return fmt::format("http://{}:{}/#token={}", host, impl_->port, impl_->token); }
-int ViewServer::port() const { return impl_->port; }
-const std::string& ViewServer::token() const { return impl_->token; }
+std::string ViewServer::url() const {
+  return fmt::format("http://{}:{}/#token={}", host, impl_->port, impl_->token);
+}
+int ViewServer::port() const {
+  return impl_->port;
+}
+const std::string& ViewServer::token() const {
+  return impl_->token;
+}
 
 void ViewServer::wait(const std::function<bool()>& stop) const {
   while (!stop()) std::this_thread::sleep_for(std::chrono::milliseconds(200));
