@@ -2,8 +2,9 @@
 # What a person types. Everything else is CMake: see CMakePresets.json.
 JOBS ?= $(shell nproc)
 BUILD := build/release
+VERSINE := $(BUILD)/apps/versine/versine
 
-.PHONY: all setup build test demo format clean
+.PHONY: all setup build test demo accuracy format clean
 all: build
 
 setup:
@@ -17,6 +18,18 @@ build: setup $(BUILD)/build.ninja
 
 test: build
 	ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+
+# A survey of 1 km of slab track with a total station: simulated, processed, compared with the truth.
+demo: build
+	rm -rf out/demo && mkdir -p out
+	$(VERSINE) simulate examples/scenarios/slab-1km.toml -o out/demo/recording
+	$(VERSINE) survey out/demo/recording/survey.toml -o out/demo/result
+	$(VERSINE) compare out/demo/result out/demo/recording/truth.h5
+	@echo; echo "The result is in out/demo/result: trajectory.h5, trajectory.csv, run.json."
+
+# Accuracy on the real recordings (docs/accuracy.md); VERSINE_DATA names their folder.
+accuracy: build
+	VERSINE_DATA=$${VERSINE_DATA:-../shared/data} benchmarks/accuracy_real.py $(VERSINE)
 
 format:
 	git ls-files '*.cpp' '*.hpp' | xargs clang-format -i

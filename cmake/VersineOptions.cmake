@@ -3,7 +3,6 @@
 option(VERSINE_TESTS "Build the tests" ON)
 option(VERSINE_BENCHMARKS "Build the kernel benchmarks" OFF)
 option(VERSINE_VIEWER "Build the web viewer's page into the program (needs node and npm)" ON)
-option(VERSINE_PYTHON "Build the Python bindings" OFF)
 option(VERSINE_WERROR "Treat warnings as errors" ON)
 option(VERSINE_SANITIZE "Build with address and undefined-behaviour sanitizers" OFF)
 option(VERSINE_COVERAGE "Build with coverage counters" OFF)
