@@ -312,7 +312,7 @@ ChainFit fit_chain(const Chain& start, std::span<const TrackSample> samples, dou
       if (i >= 0) solver.SetParameterLowerBound(x.data(), i, shortest_length);
     }
     ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_QR;
+    options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
     options.max_num_iterations = round == 0 ? 60 : 25;
     options.function_tolerance = 1e-9;
     options.logging_type = ceres::SILENT;

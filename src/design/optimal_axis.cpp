@@ -86,13 +86,24 @@ std::vector<Plateau> plateaus(std::span<const TrackSample> samples, const Optima
   const auto shortest = static_cast<std::size_t>(std::max(2.0, std::round(o.shortest / o.cell)));
   const std::vector<Segment> segments = segment(heading, 1, 3.0, std::max<std::size_t>(shortest, 3));
   std::vector<Plateau> out;
-  for (const Segment& s : segments) {
-    if (s.ramp) continue;
-    out.push_back({static_cast<double>(s.from) * o.cell, static_cast<double>(s.to) * o.cell, s.level / o.cell});
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const Segment& s = segments[i];
+    if (!s.ramp) {
+      out.push_back({static_cast<double>(s.from) * o.cell, static_cast<double>(s.to) * o.cell, s.level / o.cell});
+    } else if (i + 1 < segments.size() && segments[i + 1].ramp && s.to >= 2 && s.to + 1 < heading.size()) {
+      // Two ramps, down and up again: the piece between them was too short to be seen.
+      const double between = (heading[s.to + 1] - heading[s.to - 2]) / (3.0 * o.cell);
+      const double before = s.level / o.cell, after = segments[i + 1].level / o.cell;
+      const double low = std::min(before, after), high = std::max(before, after), step = 1.0 / o.straight;
+      const double at = static_cast<double>(s.to) * o.cell;
+      if (between < low - step || between > high + step) out.push_back({at - 0.3 * o.cell, at + 0.3 * o.cell, between});
+    }
   }
   // A transition from right to left may hold no straight piece long enough to be seen: it gets a short one.
   for (std::size_t i = 0; i + 1 < out.size(); ++i) {
-    if (!(out[i].curvature * out[i + 1].curvature < 0.0) || out[i + 1].from - out[i].to < 4.0 * o.cell) continue;
+    const double smaller = std::min(std::abs(out[i].curvature), std::abs(out[i + 1].curvature));
+    const bool reverse = out[i].curvature * out[i + 1].curvature < 0.0 && smaller > 1.0 / o.straight;
+    if (!reverse || out[i + 1].from - out[i].to < 4.0 * o.cell) continue;
     const double share = out[i].curvature / (out[i].curvature - out[i + 1].curvature);
     const double middle = out[i].to + share * (out[i + 1].from - out[i].to);
     out.insert(out.begin() + static_cast<std::ptrdiff_t>(i) + 1, {middle - 0.2 * o.cell, middle + 0.2 * o.cell, 0.0});
@@ -151,11 +162,14 @@ void erase(Chain& chain, std::size_t first, std::size_t count) {
 
 /// Drops what the data do not need: plateaus that shrank to nothing, steps of curvature within their noise.
 /// True when something was dropped, and the chain must be fitted again.
-bool prune(Chain& chain, double noise) {
+bool prune(Chain& chain, double noise, double shortest) {
   for (std::size_t i = 2; i + 2 < chain.elements.size(); i += 2) {
-    if (chain.elements[i].length > 0.5) continue;
-    // Two transitions of one direction become one; at a change of direction the point between them stays.
-    if (chain.elements[i - 2].curvature_start * chain.elements[i + 2].curvature_start < 0.0) continue;
+    const double before = chain.elements[i - 2].curvature_start, after = chain.elements[i + 2].curvature_start;
+    const double own = chain.elements[i].curvature_start;
+    // A step on the way from one curvature to the other is no arc when it is short; any other must have shrunk to
+    // nothing. At a change of direction the straight point between two transitions stays.
+    const bool on_the_way = (own - before) * (after - own) > 0.0 && before * after >= 0.0;
+    if (chain.elements[i].length > (on_the_way ? shortest : 0.5) || before * after < 0.0) continue;
     chain.elements[i - 1].length += chain.elements[i].length + chain.elements[i + 1].length;
     erase(chain, i, 2);
     connect(chain);
@@ -314,7 +328,7 @@ Expected<OptimalAxis> optimal_axis(std::span<const TrackSample> all, const Optim
   const std::vector<TrackSample> whole = unwrapped(all);
   const std::vector<TrackSample> samples = thin(whole, options.step);
   ChainFit fit = fit_chain(seed(samples, plateaus(whole, options), options), samples, options.huber, false);
-  for (int round = 0; round < 50 && prune(fit.chain, rms(fit.offset)); ++round) {
+  for (int round = 0; round < 50 && prune(fit.chain, rms(fit.offset), options.shortest); ++round) {
     trim_end(fit);
     fit = fit_chain(fit.chain, samples, options.huber, false);
   }

@@ -124,6 +124,33 @@ TEST(OptimalAxis, RecoversRadiiWithinAThousandthAndJointsWithinAMetre) {
   EXPECT_LT(worst_joint, 1.0);
 }
 
+TEST(OptimalAxis, ALineOfManyCurvesKeepsItsStructure) {
+  std::mt19937 random(9);
+  const auto between = [&random](double low, double high) {
+    return low + static_cast<double>(random() % 1000) * (high - low) / 1000.0;
+  };
+  std::vector<HorizontalElement> elements = {line(200.0)};
+  for (int i = 0; i < 6; ++i) {
+    const double radius = (i % 3 == 1 ? -1.0 : 1.0) * between(350.0, 2800.0);
+    elements.push_back(transition(Shape::clothoid, between(40.0, 140.0), inf, radius));
+    elements.push_back(arc(between(100.0, 450.0), radius));
+    elements.push_back(transition(Shape::clothoid, between(40.0, 140.0), radius, inf));
+    elements.push_back(line(between(25.0, 500.0)));
+  }
+  Alignment a;
+  a.horizontal = *HorizontalAxis::chain({0.0, 0.0, 0.0}, elements);
+  a.profile = Profile::constant(0.0, 10.0, 0.004, a.length());
+  a.cant = *CantProfile::from_points({{0.0, 0.0}});
+  const auto fit = optimal_axis(survey(a, 1e-3, 5));
+  ASSERT_TRUE(fit) << fit.error().message();
+  const auto& found = fit->alignment.horizontal.elements();
+  ASSERT_EQ(found.size(), elements.size());
+  EXPECT_LT(fit->offset_rms, 1.3e-3);
+  for (std::size_t i = 2; i < found.size(); i += 4) {
+    EXPECT_NEAR(elements[i].curvature_start / found[i].element.curvature_start, 1.0, 2e-3) << i;
+  }
+}
+
 TEST(OptimalAxis, AStraightIsOneLineAndBadInputIsNamed) {
   Alignment a;
   a.horizontal = *HorizontalAxis::chain({0.0, 0.0, 1.0}, {line(500.0)});
