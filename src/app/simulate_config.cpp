@@ -355,6 +355,7 @@ void describe_total_station(ConfigVisitor& v, sim::TotalStationModel& m) {
   v.value("sigma_distance_mm", m.sigma_distance, millimetres("Of distances."));
   v.value("sigma_distance_ppm", m.sigma_distance_ppm,
           {.doc = "Of distances.", .unit = "ppm", .scale = units::ppm, .min = 0});
+  v.value("refraction", m.refraction, {.doc = "Coefficient k of the light's bending.", .min = -5, .max = 5});
   v.value("sighting_blunder", m.sighting_blunder, share("Probability that a sighting is wrong."));
   v.value("sighting_blunder_mm", m.sighting_blunder_size, millimetres("By how much."));
 }

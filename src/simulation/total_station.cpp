@@ -55,7 +55,9 @@ stationing::Sighting sight(const Vector3d& target_s, const std::string& name, co
     (which < 1.0 / 3 ? along : which < 2.0 / 3 ? right : up) += which < 1.0 / 3 ? size : size / distance;
   }
   s.direction = circle(std::atan2(target_s.y(), target_s.x()) + right * distance / std::max(horizontal, 0.1));
-  s.zenith = std::acos(-target_s.z() / distance) + up;
+  // Light bends towards the Earth: the target looks higher.
+  constexpr double earth_radius = 6371000.0;
+  s.zenith = std::acos(-target_s.z() / distance) - 0.5 * model.refraction * distance / earth_radius + up;
   s.distance = distance + along;
   return s;
 }

@@ -27,6 +27,6 @@ struct AllanPoint {
 /// Bias instability B: the lowest deviation over 0.664 among averaging times that at least `least_independent`
 /// averages support (IEEE Std 952-1997).
 [[nodiscard]] double bias_instability_of(std::span<const AllanPoint> curve, double total_time,
-                                         double least_independent = 9.0);
+                                         double least_independent = 50.0);
 
 }  // namespace versine::simulation

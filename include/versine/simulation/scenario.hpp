@@ -176,6 +176,7 @@ struct TotalStationModel {
   double sigma_angle = 2.42e-6;                 ///< direction and zenith angle, rad (0.5 arc-second)
   double sigma_distance = 0.6e-3;               ///< m
   double sigma_distance_ppm = 1e-6;             ///< of the distance
+  double refraction = 0.13;                     ///< coefficient k of the light's bending
   double sighting_blunder = 0.0;                ///< probability for each sighting
   double sighting_blunder_size = 0.02;          ///< m across or along the line
 };
