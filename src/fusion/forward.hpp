@@ -232,6 +232,7 @@ class Forward {
       out.rows.push_back(packed);
       ++step_.rows;
     }
+    filter::symmetrize<N>(P_);
     moment_.estimate = without_error(moment_.estimate, l_, x);
     refresh();
   }

@@ -33,9 +33,19 @@ void predict(StateMatrix<N>& P, const Transition<N>& phi) {
   const Eigen::Index n = P.rows();
   P.diagonal() += 0.5 * phi.noise;
   Eigen::Matrix<double, moving, N, Eigen::ColMajor, moving, capacity<N>> rows(moving, n);
-  rows.noalias() = phi.top.lazyProduct(P);
+  // Column by column: a sum of scaled columns of `top` keeps everything in registers.
+  using Column = Eigen::Matrix<double, moving, 1>;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    Column sum = phi.top.col(0) * P(0, j);
+    for (Eigen::Index k = 1; k < n; ++k) sum += phi.top.col(k) * P(k, j);
+    rows.col(j) = sum;
+  }
   Eigen::Matrix<double, moving, moving> corner;
-  corner.noalias() = rows.lazyProduct(phi.top.transpose());
+  for (Eigen::Index j = 0; j < moving; ++j) {
+    Column sum = rows.col(0) * phi.top(j, 0);
+    for (Eigen::Index k = 1; k < n; ++k) sum += rows.col(k) * phi.top(j, k);
+    corner.col(j) = sum;
+  }
   for (Eigen::Index j = moving; j < n; ++j) {
     P.col(j).template head<moving>() = rows.col(j) * phi.decay[j];
     P.col(j).tail(n - moving) = (phi.decay[j] * P.col(j).tail(n - moving)).cwiseProduct(phi.decay.tail(n - moving));
@@ -54,7 +64,7 @@ struct UpdateRow {
 };
 
 /// Processes one row: Joseph's form (I - k h') P (I - k h')' + k r k' in O(n^2). Returns gain and innovation and moves
-/// the error estimate `x`.
+/// the error estimate `x`. P is symmetric up to rounding: see `symmetrize`.
 template <int N>
 UpdateRow<N> update_row(StateVector<N>& x, StateMatrix<N>& P, const StateVector<N>& h, double z, double r) {
   UpdateRow<N> row;
@@ -69,8 +79,15 @@ UpdateRow<N> update_row(StateVector<N>& x, StateMatrix<N>& P, const StateVector<
   a.noalias() = P.lazyProduct(h);
   const StateVector<N> correction = r * row.gain - a;
   P.noalias() += correction.lazyProduct(row.gain.transpose());
-  P = (0.5 * (P + P.transpose())).eval();
   return row;
+}
+
+/// Makes P exactly symmetric; after the rows of a measurement.
+template <int N>
+void symmetrize(StateMatrix<N>& P) {
+  for (Eigen::Index j = 1; j < P.cols(); ++j) {
+    for (Eigen::Index i = 0; i < j; ++i) P(i, j) = P(j, i) = 0.5 * (P(i, j) + P(j, i));
+  }
 }
 
 /// Adjoint state of the modified Bryson-Frazier smoother (Bierman 1973): the smoothed estimate is `x - P lambda`, its
