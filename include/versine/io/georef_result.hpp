@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <filesystem>
+#include <vector>
+
+#include "versine/core/error.hpp"
+#include "versine/georef/georeference.hpp"
+
+namespace versine::io {
+
+/// Results in the order of a job's recordings; null where there is none. Layout: docs/formats-georef.md.
+using GeorefResults = std::vector<const georef::RecordingResult*>;
+
+/// Every grid step of every plausible path: /recording_N/journey_N/path_N/{distance_m, speed_mps, sigma_distance_m,
+/// sigma_speed_mps}, its residuals, and attributes probability, log_likelihood, log_prior, tracks.
+[[nodiscard]] Expected<void> write_georef_hdf5(const std::filesystem::path& path, const georef::Map& map,
+                                               const GeorefResults& results);
+/// GeoPackage in the network's projection: layer `positions` (points every `interval` s of the most probable paths)
+/// and layer `paths` (a line for each plausible path).
+[[nodiscard]] Expected<void> write_georef_gpkg(const std::filesystem::path& path, const georef::Map& map,
+                                               const GeorefResults& results, double interval);
+
+}  // namespace versine::io
