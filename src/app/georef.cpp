@@ -17,7 +17,9 @@ namespace versine::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
+double since(Clock::time_point t) {
+  return std::chrono::duration<double>(Clock::now() - t).count();
+}
 
 bool begins_with(const std::filesystem::path& path, std::string_view bytes) {
   std::ifstream stream(path, std::ios::binary);
@@ -34,7 +36,8 @@ bool is_brussels(const std::filesystem::path& path) {
 
 nlohmann::json summary_json(const GeorefSummary& s, const georef::Map& map) {
   nlohmann::json out;
-  out["network"] = {{"file", map.network.file}, {"tracks", map.network.tracks.size()}, {"warnings", map.network.record.warnings}};
+  out["network"] = {
+      {"file", map.network.file}, {"tracks", map.network.tracks.size()}, {"warnings", map.network.record.warnings}};
   out["timings_s"] = {{"map", s.seconds_map}, {"solve", s.seconds_solve}, {"write", s.seconds_write}};
   out["faults"] = nlohmann::json::array();
   for (const auto& f : s.faults) out["faults"].push_back(f.message());
@@ -46,17 +49,26 @@ nlohmann::json summary_json(const GeorefSummary& s, const georef::Map& map) {
       continue;
     }
     for (const auto& f : o.result->record.findings) {
-      r["findings"].push_back({{"sensor", f.sensor}, {"kind", f.kind}, {"from_s", f.from.seconds()}, {"to_s", f.to.seconds()},
-                               {"count", f.count}, {"action", to_string(f.action)}, {"detail", f.detail}});
+      r["findings"].push_back({{"sensor", f.sensor},
+                               {"kind", f.kind},
+                               {"from_s", f.from.seconds()},
+                               {"to_s", f.to.seconds()},
+                               {"count", f.count},
+                               {"action", to_string(f.action)},
+                               {"detail", f.detail}});
     }
     r["rejected_fixes"] = o.result->record.rejections.size();
     for (const auto& j : o.result->journeys) {
       nlohmann::json tracks = nlohmann::json::array();
       for (const auto& t : j.paths.front().coordinates.path()) tracks.push_back(map.network.tracks[t.track].id);
-      r["journeys"].push_back({{"from_s", j.start.seconds()}, {"to_s", j.end().seconds()},
-                               {"length_m", j.paths.front().motion.distance.back() - j.paths.front().motion.distance.front()},
-                               {"probability", j.paths.front().probability}, {"paths", j.paths.size()},
-                               {"entropy_nat", j.entropy}, {"tracks", tracks}});
+      r["journeys"].push_back(
+          {{"from_s", j.start.seconds()},
+           {"to_s", j.end().seconds()},
+           {"length_m", j.paths.front().motion.distance.back() - j.paths.front().motion.distance.front()},
+           {"probability", j.paths.front().probability},
+           {"paths", j.paths.size()},
+           {"entropy_nat", j.entropy},
+           {"tracks", tracks}});
     }
     out["recordings"].push_back(r);
   }
@@ -73,7 +85,8 @@ Expected<std::unique_ptr<georef::Map>> load_map(const GeorefConfig& c) {
   return std::make_unique<georef::Map>(std::move(*network));
 }
 
-Expected<std::vector<georef::Recording>> load_recordings(const std::filesystem::path& path, std::vector<Error>& faults) {
+Expected<std::vector<georef::Recording>> load_recordings(const std::filesystem::path& path,
+                                                         std::vector<Error>& faults) {
   if (begins_with(path, "\x89HDF\r\n\x1a\n")) {
     auto file = io::read_onboard(path);
     if (!file) return tl::unexpected(file.error());
@@ -99,7 +112,8 @@ Expected<std::vector<georef::Recording>> load_recordings(const std::filesystem::
   return out;
 }
 
-Expected<GeorefSummary> run_georef(const GeorefConfig& config, const std::filesystem::path& folder, Progress& progress) {
+Expected<GeorefSummary> run_georef(const GeorefConfig& config, const std::filesystem::path& folder,
+                                   Progress& progress) {
   GeorefSummary summary;
   auto begin = Clock::now();
   progress.report("map", 0.0);
@@ -121,8 +135,10 @@ Expected<GeorefSummary> run_georef(const GeorefConfig& config, const std::filesy
     }
   }
   summary.seconds_solve = since(begin);
-  if (std::none_of(summary.outcomes.begin(), summary.outcomes.end(), [](const auto& o) { return o.result.has_value(); })) {
-    return tl::unexpected(summary.outcomes.empty() ? Error{.field = "recordings", .found = "none"} : summary.outcomes.front().result.error());
+  if (std::none_of(summary.outcomes.begin(), summary.outcomes.end(),
+                   [](const auto& o) { return o.result.has_value(); })) {
+    return tl::unexpected(summary.outcomes.empty() ? Error{.field = "recordings", .found = "none"}
+                                                   : summary.outcomes.front().result.error());
   }
 
   // Into a sibling, which then takes the place of the folder.
@@ -132,7 +148,11 @@ Expected<GeorefSummary> run_georef(const GeorefConfig& config, const std::filesy
   std::error_code code;
   std::filesystem::remove_all(fresh, code);
   std::filesystem::create_directories(fresh, code);
-  if (code) return fail({.file = fresh.string(), .found = code.message(), .expected = "a folder that can be written", .advice = "choose another with --output"});
+  if (code)
+    return fail({.file = fresh.string(),
+                 .found = code.message(),
+                 .expected = "a folder that can be written",
+                 .advice = "choose another with --output"});
   std::vector<const georef::RecordingResult*> results;
   for (const auto& o : summary.outcomes) results.push_back(o.result ? &*o.result : nullptr);
   auto done = write_georef_csv(fresh, **map, summary.outcomes, config.csv_interval);
@@ -149,7 +169,11 @@ Expected<GeorefSummary> run_georef(const GeorefConfig& config, const std::filesy
   std::ofstream(fresh / "run.json") << run.dump(1) << '\n';
   std::filesystem::remove_all(folder, code);
   std::filesystem::rename(fresh, folder, code);
-  if (code) return fail({.file = folder.string(), .found = code.message(), .expected = "a result folder", .advice = "choose another with --output"});
+  if (code)
+    return fail({.file = folder.string(),
+                 .found = code.message(),
+                 .expected = "a result folder",
+                 .advice = "choose another with --output"});
   return summary;
 }
 

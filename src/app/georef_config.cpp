@@ -6,57 +6,88 @@ namespace versine::app {
 
 void describe(ConfigVisitor& v, GeorefConfig& c) {
   v.table("network", "The railway map", [&](ConfigVisitor& t) {
-    t.value("file", c.network, {.doc = "GeoPackage, GeoJSON, Shapefile, OpenStreetMap PBF or XML", .required = true, .example = "\"network.gpkg\""});
+    t.value("file", c.network,
+            {.doc = "GeoPackage, GeoJSON, Shapefile, OpenStreetMap PBF or XML",
+             .required = true,
+             .example = "\"network.gpkg\""});
     t.value("layer", c.layer, {.doc = "Layer of the tracks; none: the first with lines"});
     t.value("id_field", c.id_field, {.doc = "Attribute that names a track; none: id, track_id or name"});
     t.value("source_crs", c.source_crs, {.doc = "CRS of the file, when it does not tell it or tells it wrongly"});
-    t.value("crs", c.crs, {.doc = "Projection to work in: a PROJ definition or 'utm'; none: the file's own, or a transverse Mercator on its middle meridian"});
+    t.value("crs", c.crs,
+            {.doc = "Projection to work in: a PROJ definition or 'utm'; none: the file's own, or a transverse Mercator "
+                    "on its middle meridian"});
     t.value("osm_types", c.osm_types, {.doc = "Values of OpenStreetMap's railway tag to be read"});
-    t.value("snap_m", c.snap, {.doc = "Track ends nearer than this are connected", .unit = "m", .max = 10.0, .positive = true});
-    t.value("largest_turn_deg", c.largest_turn, {.doc = "A wheel passes an unlabelled joint that turns by less than this", .unit = "deg", .scale = units::deg, .max = 90.0, .positive = true});
+    t.value("snap_m", c.snap,
+            {.doc = "Track ends nearer than this are connected", .unit = "m", .max = 10.0, .positive = true});
+    t.value("largest_turn_deg", c.largest_turn,
+            {.doc = "A wheel passes an unlabelled joint that turns by less than this",
+             .unit = "deg",
+             .scale = units::deg,
+             .max = 90.0,
+             .positive = true});
   });
-  v.value("recordings", c.recordings, {.doc = "Files to be georeferenced", .required = true, .example = "[\"journey.h5\"]"});
+  v.value("recordings", c.recordings,
+          {.doc = "Files to be georeferenced", .required = true, .example = "[\"journey.h5\"]"});
   auto& o = c.options;
   v.table("gnss", "Errors of GNSS", [&](ConfigVisitor& t) {
-    t.value("sigma_scale", o.gnss.scale, {.doc = "The receiver's own sigmas times this", .max = 20.0, .positive = true});
-    t.value("correlated_share", o.gnss.correlated, {.doc = "Share of a fix's variance that is correlated in time", .min = 0.0, .max = 0.99});
-    t.value("correlation_time_s", o.gnss.correlation_time, {.doc = "Correlation time of that part", .unit = "s", .positive = true});
-    t.value("gate", o.gnss.gate, {.doc = "Normalised innovation squared beyond which a fix is left out", .positive = true});
+    t.value("sigma_scale", o.gnss.scale,
+            {.doc = "The receiver's own sigmas times this", .max = 20.0, .positive = true});
+    t.value("correlated_share", o.gnss.correlated,
+            {.doc = "Share of a fix's variance that is correlated in time", .min = 0.0, .max = 0.99});
+    t.value("correlation_time_s", o.gnss.correlation_time,
+            {.doc = "Correlation time of that part", .unit = "s", .positive = true});
+    t.value("gate", o.gnss.gate,
+            {.doc = "Normalised innovation squared beyond which a fix is left out", .positive = true});
     t.value("map_sigma_m", o.gnss.map_sigma, {.doc = "Lateral error of the map", .unit = "m", .positive = true});
   });
   v.table("motion", "What no sensor tells of the acceleration", [&](ConfigVisitor& t) {
-    t.value("sigma_with_imu_mps2", o.with_imu.sigma, {.doc = "Bias and slope, with an IMU", .unit = "m/s^2", .positive = true});
+    t.value("sigma_with_imu_mps2", o.with_imu.sigma,
+            {.doc = "Bias and slope, with an IMU", .unit = "m/s^2", .positive = true});
     t.value("time_with_imu_s", o.with_imu.time, {.doc = "Their correlation time", .unit = "s", .positive = true});
-    t.value("sigma_without_imu_mps2", o.without_imu.sigma, {.doc = "Acceleration, without an IMU", .unit = "m/s^2", .positive = true});
+    t.value("sigma_without_imu_mps2", o.without_imu.sigma,
+            {.doc = "Acceleration, without an IMU", .unit = "m/s^2", .positive = true});
     t.value("time_without_imu_s", o.without_imu.time, {.doc = "Its correlation time", .unit = "s", .positive = true});
-    t.value("forward_axis", o.forward_axis, {.doc = "The vehicle's forward direction in the IMU's axes; none: found from the movement"});
+    t.value("forward_axis", o.forward_axis,
+            {.doc = "The vehicle's forward direction in the IMU's axes; none: found from the movement"});
   });
   v.table("journeys", "Splitting a recording", [&](ConfigVisitor& t) {
     t.value("shortest_s", o.journeys.shortest, {.doc = "Shorter movements are left out", .unit = "s", .min = 0.0});
-    t.value("slowest_mps", o.journeys.slowest, {.doc = "The largest speed must exceed this", .unit = "m/s", .min = 0.0});
+    t.value("slowest_mps", o.journeys.slowest,
+            {.doc = "The largest speed must exceed this", .unit = "m/s", .min = 0.0});
     t.value("every_stop", o.journeys.every_stop, {.doc = "End a journey at every standstill instead of at reversals"});
   });
   v.table("paths", "Path inference", [&](ConfigVisitor& t) {
     t.value("hypotheses", o.inference.paths, {.doc = "Paths kept by the coarse search", .min = 1, .max = 1000});
-    t.value("radius_m", o.inference.radius, {.doc = "Tracks this near a fix are candidates", .unit = "m", .positive = true});
-    t.value("diverging_probability", o.inference.diverging, {.doc = "Prior probability of the diverging leg of a switch", .min = 0.001, .max = 0.999});
-    t.value("smallest_probability", o.smallest_probability, {.doc = "Less probable paths are not reported", .min = 0.0, .max = 0.5});
+    t.value("radius_m", o.inference.radius,
+            {.doc = "Tracks this near a fix are candidates", .unit = "m", .positive = true});
+    t.value("diverging_probability", o.inference.diverging,
+            {.doc = "Prior probability of the diverging leg of a switch", .min = 0.001, .max = 0.999});
+    t.value("smallest_probability", o.smallest_probability,
+            {.doc = "Less probable paths are not reported", .min = 0.0, .max = 0.5});
     static constexpr std::pair<std::string_view, georef::Linearisation> words[] = {
-        {"central-difference", georef::Linearisation::central_difference}, {"unscented", georef::Linearisation::unscented}};
-    t.choice("linearisation", o.linearisation, std::span<const std::pair<std::string_view, georef::Linearisation>>(words), {.doc = "Of the path in the position update"});
-    t.value("jacobian_step_m", o.jacobian_step, {.doc = "Step of the central difference", .unit = "m", .positive = true});
+        {"central-difference", georef::Linearisation::central_difference},
+        {"unscented", georef::Linearisation::unscented}};
+    t.choice("linearisation", o.linearisation,
+             std::span<const std::pair<std::string_view, georef::Linearisation>>(words),
+             {.doc = "Of the path in the position update"});
+    t.value("jacobian_step_m", o.jacobian_step,
+            {.doc = "Step of the central difference", .unit = "m", .positive = true});
   });
-  v.tables<georef::Constraint>("constraints", "What a reviewer decided about a stretch of time", c.constraints,
-                               [](ConfigVisitor& t, georef::Constraint& k) {
-    double from = k.from.seconds(), to = k.to.seconds();
-    t.value("from_s", from, {.doc = "Beginning, in the recording's time", .unit = "s", .required = true});
-    t.value("to_s", to, {.doc = "End", .unit = "s", .required = true});
-    k.from = Time::from_seconds(from), k.to = Time::from_seconds(to);
-    t.value("tracks", k.tracks, {.doc = "The vehicle was on one of these tracks", .required = true});
-    t.value("excluded", k.excluded, {.doc = "It was on none of them"});
-  });
+  v.tables<georef::Constraint>(
+      "constraints", "What a reviewer decided about a stretch of time", c.constraints,
+      [](ConfigVisitor& t, georef::Constraint& k) {
+        double from = k.from.seconds(), to = k.to.seconds();
+        t.value("from_s", from, {.doc = "Beginning, in the recording's time", .unit = "s", .required = true});
+        t.value("to_s", to, {.doc = "End", .unit = "s", .required = true});
+        k.from = Time::from_seconds(from), k.to = Time::from_seconds(to);
+        t.value("tracks", k.tracks, {.doc = "The vehicle was on one of these tracks", .required = true});
+        t.value("excluded", k.excluded, {.doc = "It was on none of them"});
+      });
   v.table("output", "Results", [&](ConfigVisitor& t) {
-    t.value("csv_interval_s", c.csv_interval, {.doc = "Between rows of positions.csv and points of the GeoPackage; the HDF5 file has every grid step", .unit = "s", .positive = true});
+    t.value("csv_interval_s", c.csv_interval,
+            {.doc = "Between rows of positions.csv and points of the GeoPackage; the HDF5 file has every grid step",
+             .unit = "s",
+             .positive = true});
   });
 }
 

@@ -25,7 +25,8 @@ bool add_path(OGRLayer& layer, const georef::Map& map, const georef::PathSolutio
   const std::unique_ptr<OGRFeature> f(OGRFeature::CreateFeature(layer.GetLayerDefn()));
   f->SetField(0, r), f->SetField(1, k), f->SetField(2, i), f->SetField(3, p.probability);
   OGRLineString line;
-  const double from = std::max(0.0, p.motion.distance.front()), to = std::min(p.coordinates.length(), p.motion.distance.back());
+  const double from = std::max(0.0, p.motion.distance.front()),
+               to = std::min(p.coordinates.length(), p.motion.distance.back());
   const auto steps = std::max(2, static_cast<int>((to - from) / 10.0) + 2);
   for (int s = 0; s < steps; ++s) {
     const Eigen::Vector2d q = p.coordinates.position(from + (to - from) * s / (steps - 1)) + map.network.origin;
@@ -35,7 +36,8 @@ bool add_path(OGRLayer& layer, const georef::Map& map, const georef::PathSolutio
   return layer.CreateFeature(f.get()) == OGRERR_NONE;
 }
 
-bool add_positions(OGRLayer& layer, const georef::Map& map, const georef::JourneyResult& j, int r, int k, double interval) {
+bool add_positions(OGRLayer& layer, const georef::Map& map, const georef::JourneyResult& j, int r, int k,
+                   double interval) {
   const auto& best = j.paths.front();
   const auto every = static_cast<std::size_t>(std::max(1.0, std::round(interval / j.grid)));
   for (std::size_t i = 0; i < j.steps; i += every) {
@@ -58,10 +60,13 @@ bool add_positions(OGRLayer& layer, const georef::Map& map, const georef::Journe
 
 }  // namespace
 
-Expected<void> write_georef_gpkg(const std::filesystem::path& path, const georef::Map& map, const GeorefResults& results,
-                                 double interval) {
+Expected<void> write_georef_gpkg(const std::filesystem::path& path, const georef::Map& map,
+                                 const GeorefResults& results, double interval) {
   const auto refuse = [&] {
-    return fail({.file = path.string(), .found = "a file that cannot be written", .expected = "a writable folder with space", .advice = CPLGetLastErrorMsg()});
+    return fail({.file = path.string(),
+                 .found = "a file that cannot be written",
+                 .expected = "a writable folder with space",
+                 .advice = CPLGetLastErrorMsg()});
   };
   GDALAllRegister();
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
@@ -72,10 +77,18 @@ Expected<void> write_georef_gpkg(const std::filesystem::path& path, const georef
   OGRSpatialReference crs;
   crs.SetFromUserInput(map.network.projection.wkt().c_str());
   crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  OGRLayer* paths = make_layer(*set, "paths", crs, wkbLineString, {{"recording", OFTInteger}, {"journey", OFTInteger}, {"path", OFTInteger}, {"probability", OFTReal}});
+  OGRLayer* paths =
+      make_layer(*set, "paths", crs, wkbLineString,
+                 {{"recording", OFTInteger}, {"journey", OFTInteger}, {"path", OFTInteger}, {"probability", OFTReal}});
   OGRLayer* points = make_layer(*set, "positions", crs, wkbPoint,
-                                {{"recording", OFTInteger}, {"journey", OFTInteger}, {"time_s", OFTReal}, {"track", OFTString},
-                                 {"track_distance_m", OFTReal}, {"speed_mps", OFTReal}, {"sigma_m", OFTReal}, {"probability", OFTReal}});
+                                {{"recording", OFTInteger},
+                                 {"journey", OFTInteger},
+                                 {"time_s", OFTReal},
+                                 {"track", OFTString},
+                                 {"track_distance_m", OFTReal},
+                                 {"speed_mps", OFTReal},
+                                 {"sigma_m", OFTReal},
+                                 {"probability", OFTReal}});
   if (paths == nullptr || points == nullptr || set->StartTransaction() != OGRERR_NONE) return refuse();
   for (std::size_t r = 0; r < results.size(); ++r) {
     if (results[r] == nullptr) continue;

@@ -80,17 +80,22 @@ void write_path(hid_t at, const georef::Map& map, const georef::PathSolution& p)
   column("residual_fix", fix, H5T_NATIVE_INT64);
   const hsize_t size[2] = {fix.size(), 6};
   const Handle space(H5Screate_simple(2, size, nullptr), H5Sclose);
-  const Handle set(H5Dcreate2(at, "residuals", H5T_NATIVE_FLOAT, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  const Handle set(H5Dcreate2(at, "residuals", H5T_NATIVE_FLOAT, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                   H5Dclose);
   if (!fix.empty()) H5Dwrite(set, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, residual.data());
   attribute(set, "columns", "along_m across_m sigma_along_m sigma_across_m nis weight");
 }
 
 }  // namespace
 
-Expected<void> write_georef_hdf5(const std::filesystem::path& path, const georef::Map& map, const GeorefResults& results) {
+Expected<void> write_georef_hdf5(const std::filesystem::path& path, const georef::Map& map,
+                                 const GeorefResults& results) {
   const Handle file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
   if (file < 0) {
-    return fail({.file = path.string(), .found = "a file that cannot be written", .expected = "a writable folder", .advice = "free some space"});
+    return fail({.file = path.string(),
+                 .found = "a file that cannot be written",
+                 .expected = "a writable folder",
+                 .advice = "free some space"});
   }
   attribute(file, "network", map.network.file);
   attribute(file, "crs", map.network.projection.definition());
@@ -111,7 +116,10 @@ Expected<void> write_georef_hdf5(const std::filesystem::path& path, const georef
     }
   }
   if (H5Fflush(file, H5F_SCOPE_LOCAL) < 0) {
-    return fail({.file = path.string(), .found = "a file that cannot be written whole", .expected = "space on the disk", .advice = "free some space"});
+    return fail({.file = path.string(),
+                 .found = "a file that cannot be written whole",
+                 .expected = "space on the disk",
+                 .advice = "free some space"});
   }
   return {};
 }

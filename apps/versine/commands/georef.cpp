@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "versine/app/georef.hpp"
+
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 
 #include "command.hpp"
-#include "versine/app/georef.hpp"
 
 namespace versine::cli {
 
@@ -12,7 +13,8 @@ namespace {
 
 int run(const JobOptions& options) {
   app::GeorefConfig config;
-  const auto read = app::read_config(options.job, [&](app::ConfigVisitor& v) { app::describe(v, config); }, options.set);
+  const auto read = app::read_config(
+      options.job, [&](app::ConfigVisitor& v) { app::describe(v, config); }, options.set);
   if (!read) return report(read.error());
   std::filesystem::path folder = options.output;
   if (folder.empty()) folder = std::filesystem::path(options.job).replace_extension("");
@@ -22,17 +24,20 @@ int run(const JobOptions& options) {
   for (const auto& f : summary->faults) report(f);
   std::size_t journeys = 0, failed = 0;
   for (const auto& o : summary->outcomes) {
-    if (!o.result) report(o.result.error()), ++failed;
-    else journeys += o.result->journeys.size();
+    if (!o.result)
+      report(o.result.error()), ++failed;
+    else
+      journeys += o.result->journeys.size();
   }
   if (options.json) {
     std::FILE* file = std::fopen((folder / "run.json").c_str(), "r");
     for (int c = file != nullptr ? std::fgetc(file) : EOF; c != EOF; c = std::fgetc(file)) std::putchar(c);
     if (file != nullptr) std::fclose(file);
   } else if (!options.quiet) {
-    std::printf("%zu recordings, %zu journeys, %zu failed; map %.2f s, journeys %.2f s, writing %.2f s; results in %s\n",
-                summary->outcomes.size(), journeys, failed, summary->seconds_map, summary->seconds_solve,
-                summary->seconds_write, folder.c_str());
+    std::printf(
+        "%zu recordings, %zu journeys, %zu failed; map %.2f s, journeys %.2f s, writing %.2f s; results in %s\n",
+        summary->outcomes.size(), journeys, failed, summary->seconds_map, summary->seconds_solve,
+        summary->seconds_write, folder.c_str());
   }
   return failed == 0 && summary->faults.empty() ? good : unacceptable;
 }
