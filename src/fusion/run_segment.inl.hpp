@@ -30,6 +30,10 @@ inline void write_trajectory(const RunContext& c, const Segment& segment, const 
   const auto tick_of = [&](Time t) {
     return rate > 0.0 ? static_cast<std::int64_t>(std::floor(static_cast<double>(t.ns) * (rate * 1e-9) + 1e-6)) : t.ns;
   };
+  // Reserved at once: a vector that grows by doubling would need half as much again at its peak.
+  const double points = (segment.to - segment.from).seconds() * rate + 2.0;
+  const std::size_t samples = segment.end - segment.begin;
+  out.samples.reserve(out.size() + (rate > 0.0 ? std::min(samples, static_cast<std::size_t>(points)) : samples));
   std::int64_t last = INT64_MIN;
   const auto point = [&](const inertial::NavState& nav, std::size_t k, double share) {
     const Node &a = nodes[k], &b = nodes[std::min(k + 1, nodes.size() - 1)];
