@@ -206,41 +206,15 @@ void describe_body(ConfigVisitor& v, SimulateConfig& c) {
   });
 }
 
-void describe_triad(ConfigVisitor& v, sensors::TriadErrors& e, bool gyro) {
-  const double bias = gyro ? units::deg_per_hour : units::mGal;
-  const double walk = gyro ? units::deg_per_sqrt_hour : units::mps_per_sqrt_hour;
-  const auto value = [&](std::string_view key, double& x, std::string_view doc, std::string_view unit, double scale) {
-    std::optional<double> given;
-    v.value(key, given, {.doc = doc, .unit = unit, .scale = scale, .min = 0});
-    if (given) x = *given;
-  };
-  value(gyro ? "bias_degph" : "bias_mgal", e.bias, "Sigma of the constant bias.", gyro ? "deg/h" : "mGal", bias);
-  value(gyro ? "random_walk_degpsqrth" : "random_walk_mpspsqrth", e.random_walk, "Angle or velocity random walk.",
-        gyro ? "deg/sqrt(h)" : "m/s/sqrt(h)", walk);
-  value(gyro ? "bias_instability_degph" : "bias_instability_mgal", e.bias_instability,
-        "Sigma of the slowly varying bias, or B of flicker noise.", gyro ? "deg/h" : "mGal", bias);
-  value("correlation_time_s", e.correlation_time, "Of the slowly varying bias.", "s", 1.0);
-  value(gyro ? "rate_random_walk_degphpsqrth" : "rate_random_walk_mgalpsqrth", e.rate_random_walk,
-        "Random walk of the bias.", gyro ? "deg/h/sqrt(h)" : "mGal/sqrt(h)", bias / 60.0);
-  value("scale_factor_ppm", e.scale_factor, "Sigma of the scale factor errors.", "ppm", units::ppm);
-  value("misalignment_arcsec", e.misalignment, "Sigma of the angles of non-orthogonality.", "arcsec", units::arcsec);
-}
-
 void describe_imu(ConfigVisitor& v, SimulateConfig& c) {
   sim::ImuModel& m = c.imu;
-  v.value("grade", c.imu_grade,
-          {.doc = "Class of the instrument: perfect, navigation-rlg, rlg-jiang, fog, tactical or mems; single values "
-                  "below override it."});
+  describe(v, c.imu_errors);
   v.value("rate_hz", m.rate, rate("Of the samples.", 4000));
   v.value("rates", c.write_rates, {.doc = "Write mean rates instead of increments."});
   using Instability = sim::ImuModel::Instability;
   static constexpr Words<Instability, 2> kinds{
       {{"gauss-markov", Instability::gauss_markov}, {"flicker", Instability::flicker}}};
   v.choice<Instability>("instability", m.instability, kinds, {.doc = "How the bias instability varies."});
-  v.table("gyro", "Gyroscope errors that differ from the grade's.",
-          [&](ConfigVisitor& t) { describe_triad(t, m.errors.gyro, true); });
-  v.table("accelerometer", "Accelerometer errors that differ from the grade's.",
-          [&](ConfigVisitor& t) { describe_triad(t, m.errors.accelerometer, false); });
   v.value("gyro_bias_degph", m.gyro_bias,
           {.doc = "The constant bias itself, instead of its sigma.", .unit = "deg/h", .scale = units::deg_per_hour});
   v.value("accelerometer_bias_mgal", m.accelerometer_bias,

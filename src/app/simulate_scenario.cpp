@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <cmath>
-#include <limits>
 
 #include "versine/app/simulate_config.hpp"
-#include "versine/core/text.hpp"
 #include "versine/io/alignment_file.hpp"
-#include "versine/io/table_reader.hpp"
-#include "versine/sensors/imu_grade.hpp"
+#include "versine/io/write_recording.hpp"
 #include "versine/simulation/simulate.hpp"
 
 /// From what a scenario file says to a scenario.
@@ -121,41 +117,27 @@ Expected<design::Alignment> alignment_of(const SimulateConfig& c) {
   return alignment;
 }
 
-Expected<void> look_up_grade(SimulateConfig& c) {
-  const auto grade = sensors::find_imu_grade(c.imu_grade);
-  if (grade) {
-    c.imu.errors = grade->errors;
-    return {};
-  }
-  std::vector<std::string_view> names;
-  for (const auto& known : sensors::imu_grades()) names.push_back(known.name);
-  const std::string_view near = nearest(c.imu_grade, names);
-  return refuse("imu.grade", fmt::format("'{}'", c.imu_grade), fmt::format("one of {}", fmt::join(names, ", ")),
-                near.empty() ? "take one of these, or give the values under [imu.gyro] and [imu.accelerometer]"
-                             : fmt::format("did you mean '{}'?", near));
-}
 }  // namespace
 
 Expected<SimulateConfig> read_simulate_config(const std::filesystem::path& path,
                                               std::span<const std::string> overrides) {
   SimulateConfig c;
-  const auto read = [&] {
-    return read_config(
-        path, [&](ConfigVisitor& v) { describe(v, c); }, overrides);
-  };
-  if (auto done = read(); !done) return tl::unexpected(std::move(done.error()));
+  if (auto done = read_config(
+          path, [&](ConfigVisitor& v) { describe(v, c); }, overrides);
+      !done) {
+    return tl::unexpected(std::move(done.error()));
+  }
   const auto in_file = [&](Error error) {
     if (error.file.empty()) error.file = path.string();
     return tl::unexpected<Error>(std::move(error));
   };
-  // The grade first, single values over it: read once more with the grade's values as the defaults.
-  const std::string grade = c.imu_grade;
-  if (auto done = look_up_grade(c); !done) return in_file(std::move(done.error()));
-  const sensors::ImuErrors errors = c.imu.errors;
-  c = {};
-  c.imu.errors = errors;
-  if (auto done = read(); !done) return tl::unexpected(std::move(done.error()));
-
+  auto errors = c.imu_errors.errors();
+  if (!errors) {
+    Error error = std::move(errors.error());
+    error.field = "imu." + error.field;
+    return in_file(std::move(error));
+  }
+  c.imu.errors = *errors;
   if (c.job != "simulate") {
     return in_file({.field = "job",
                     .found = fmt::format("'{}'", c.job),
@@ -165,6 +147,11 @@ Expected<SimulateConfig> read_simulate_config(const std::filesystem::path& path,
   auto alignment = alignment_of(c);
   if (!alignment) return in_file(std::move(alignment.error()));
   c.scenario.track.alignment = std::move(*alignment);
+  if (!c.table_file.empty()) {
+    auto table = io::read_deviations(c.table_file.path);
+    if (!table) return tl::unexpected(std::move(table.error()));
+    c.scenario.track.table = std::move(*table);
+  }
   c.scenario.name = c.title;
   c.scenario.start = Time::from_seconds(c.start_gps_s);
   auto& on = c.scenario.equipment;

@@ -13,7 +13,7 @@ std::string list(const Eigen::Vector3d& v) {
 }
 }  // namespace
 
-std::string survey_job(const SimulateConfig& c, const simulation::SimulatedRecording& r) {
+std::string survey_job_for(const SimulateConfig& c, const simulation::SimulatedRecording& r) {
   const auto& trolley = c.scenario.trolley;
   const geodesy::Euler& mounting = c.has_vehicle ? c.vehicle.mounting : trolley.mounting;
   // A job gives lever arms in the IMU's axes, a scenario in the trolley's.
@@ -23,7 +23,7 @@ std::string survey_job(const SimulateConfig& c, const simulation::SimulatedRecor
       "title = \"{}\"\n",
       c.title);
   if (!r.imu.empty()) {
-    text += fmt::format("\n[imu]\nfile = \"imu.csv\"\ngrade = \"{}\"\nmounting_deg = {}\n", c.imu_grade,
+    text += fmt::format("\n[imu]\nfile = \"imu.csv\"\ngrade = \"{}\"\nmounting_deg = {}\n", c.imu_errors.grade,
                         list(Eigen::Vector3d(mounting.roll, mounting.pitch, mounting.yaw) / units::deg));
   }
   if (!r.gnss.empty()) {

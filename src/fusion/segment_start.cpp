@@ -58,7 +58,9 @@ std::optional<Place> place_at(Time t, const AidedInsInput& in, const AidedInsOpt
     });
   }
   nearest(in.landmarks, [&](const auto& s) {
-    offer(s.time, s.position, std::sqrt(s.covariance.diagonal().maxCoeff()), o.landmark_lever.l_b);
+    // It holds for the whole standstill, which may have begun minutes before its middle.
+    const Time at = s.from < s.to ? std::clamp(t, s.from, s.to) : s.time;
+    offer(at, s.position, std::sqrt(s.covariance.diagonal().maxCoeff()), o.landmark_lever.l_b);
   });
   if (best && best->age > 60.0) return std::nullopt;
   return best;

@@ -3,8 +3,9 @@
 
 #include <cmath>
 
-#include "csv_writer.hpp"
-#include "hdf5_columns.hpp"
+#include "hdf5_file.hpp"
+#include "text_output.hpp"
+#include "versine/core/calendar.hpp"
 #include "versine/core/units.hpp"
 #include "versine/geodesy/local_frame.hpp"
 #include "versine/io/table_reader.hpp"
@@ -15,13 +16,15 @@ namespace {
 using simulation::SimulatedRecording;
 
 Expected<void> write_imu(const std::filesystem::path& path, const sensors::ImuSeries& imu, bool rates) {
-  CsvWriter out(path, rates ? "time_s,gyro_x_radps,gyro_y_radps,gyro_z_radps,accel_x_mps2,accel_y_mps2,accel_z_mps2"
-                            : "time_s,dtheta_x_rad,dtheta_y_rad,dtheta_z_rad,dvel_x_mps,dvel_y_mps,dvel_z_mps");
+  TextOutput out(path);
+  out.text(rates ? "time_s,gyro_x_radps,gyro_y_radps,gyro_z_radps,accel_x_mps2,accel_y_mps2,accel_z_mps2"
+                 : "time_s,dtheta_x_rad,dtheta_y_rad,dtheta_z_rad,dvel_x_mps,dvel_y_mps,dvel_z_mps");
+  out.end_line();
   const double factor = rates ? 1.0 / imu.interval.seconds() : 1.0;
   for (const auto& s : imu) {
     const Eigen::Vector3d g = factor * s.dtheta, a = factor * s.dvel;
-    out.row("{},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g}", ExactSeconds{s.time}, g.x(), g.y(), g.z(), a.x(),
-            a.y(), a.z());
+    out.print("{},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g},{:.12g}\n", seconds_text(s.time), g.x(), g.y(), g.z(), a.x(),
+              a.y(), a.z());
   }
   return out.close();
 }
@@ -41,11 +44,13 @@ int rtklib_quality(sensors::FixType fix) {
 
 Expected<void> write_gnss(const std::filesystem::path& path, const Series<sensors::GnssSample>& gnss) {
   const bool velocity = gnss.front().v_ned.has_value();
-  CsvWriter out(path, std::string("time_s,latitude_deg,longitude_deg,height_m,sigma_north_m,sigma_east_m,sigma_down_m,"
-                                  "fix_rtklib,satellites") +
-                          (velocity ? ",velocity_north_mps,velocity_east_mps,velocity_down_mps,"
-                                      "sigma_velocity_north_mps,sigma_velocity_east_mps,sigma_velocity_down_mps"
-                                    : ""));
+  TextOutput out(path);
+  out.text(std::string("time_s,latitude_deg,longitude_deg,height_m,sigma_north_m,sigma_east_m,sigma_down_m,"
+                       "fix_rtklib,satellites") +
+           (velocity ? ",velocity_north_mps,velocity_east_mps,velocity_down_mps,"
+                       "sigma_velocity_north_mps,sigma_velocity_east_mps,sigma_velocity_down_mps"
+                     : ""));
+  out.end_line();
   for (const auto& s : gnss) {
     std::string more;
     if (velocity) {
@@ -53,44 +58,51 @@ Expected<void> write_gnss(const std::filesystem::path& path, const Series<sensor
       more = fmt::format(",{:.5f},{:.5f},{:.5f},{:.4f},{:.4f},{:.4f}", v.x(), v.y(), v.z(), s.sigma_v_ned.x(),
                          s.sigma_v_ned.y(), s.sigma_v_ned.z());
     }
-    out.row("{},{:.11f},{:.11f},{:.5f},{:.5f},{:.5f},{:.5f},{},{}{}", ExactSeconds{s.time},
-            s.position.latitude / units::deg, s.position.longitude / units::deg, s.position.height, s.sigma_ned.x(),
-            s.sigma_ned.y(), s.sigma_ned.z(), rtklib_quality(s.fix), s.satellites, more);
+    out.print("{},{:.11f},{:.11f},{:.5f},{:.5f},{:.5f},{:.5f},{},{}{}\n", seconds_text(s.time),
+              s.position.latitude / units::deg, s.position.longitude / units::deg, s.position.height, s.sigma_ned.x(),
+              s.sigma_ned.y(), s.sigma_ned.z(), rtklib_quality(s.fix), s.satellites, more);
   }
   return out.close();
 }
 
 Expected<void> write_landmarks(const std::filesystem::path& path, const std::vector<sensors::LandmarkSample>& list) {
-  CsvWriter out(path,
-                "name,time_from_s,time_to_s,latitude_deg,longitude_deg,height_m,sigma_north_m,sigma_east_m,"
-                "sigma_down_m");
+  TextOutput out(path);
+  out.text(
+      "name,time_from_s,time_to_s,latitude_deg,longitude_deg,height_m,sigma_north_m,sigma_east_m,"
+      "sigma_down_m");
+  out.end_line();
   for (const auto& s : list) {
-    out.row("{},{},{},{:.12f},{:.12f},{:.6f},{:.6f},{:.6f},{:.6f}", s.name, ExactSeconds{s.from}, ExactSeconds{s.to},
-            s.position.latitude / units::deg, s.position.longitude / units::deg, s.position.height,
-            std::sqrt(s.covariance(0, 0)), std::sqrt(s.covariance(1, 1)), std::sqrt(s.covariance(2, 2)));
+    out.print("{},{},{},{:.12f},{:.12f},{:.6f},{:.6f},{:.6f},{:.6f}\n", s.name, seconds_text(s.from),
+              seconds_text(s.to), s.position.latitude / units::deg, s.position.longitude / units::deg,
+              s.position.height, std::sqrt(s.covariance(0, 0)), std::sqrt(s.covariance(1, 1)),
+              std::sqrt(s.covariance(2, 2)));
   }
   return out.close();
 }
 
 Expected<void> write_control(const std::filesystem::path& path, const SimulatedRecording& r) {
   const geodesy::LocalFrame frame(r.origin);
-  CsvWriter out(path, "name,latitude_deg,longitude_deg,height_m,sigma_north_mm,sigma_east_mm,sigma_up_mm");
+  TextOutput out(path);
+  out.text("name,latitude_deg,longitude_deg,height_m,sigma_north_mm,sigma_east_mm,sigma_up_mm");
+  out.end_line();
   for (const auto& p : r.control_points) {
     const geodesy::Geodetic g = frame.to_geodetic(p.position);
-    out.row("{},{:.12f},{:.12f},{:.6f},{:.3f},{:.3f},{:.3f}", p.name, g.latitude / units::deg, g.longitude / units::deg,
-            g.height, std::sqrt(p.covariance(0, 0)) / units::mm, std::sqrt(p.covariance(1, 1)) / units::mm,
-            std::sqrt(p.covariance(2, 2)) / units::mm);
+    out.print("{},{:.12f},{:.12f},{:.6f},{:.3f},{:.3f},{:.3f}\n", p.name, g.latitude / units::deg,
+              g.longitude / units::deg, g.height, std::sqrt(p.covariance(0, 0)) / units::mm,
+              std::sqrt(p.covariance(1, 1)) / units::mm, std::sqrt(p.covariance(2, 2)) / units::mm);
   }
   return out.close();
 }
 
 Expected<void> write_readings(const std::filesystem::path& path, const std::vector<stationing::Stationing>& stations) {
-  CsvWriter out(path, "station,point,direction_gon,zenith_gon,distance_m,from_s,to_s");
+  TextOutput out(path);
+  out.text("station,point,direction_gon,zenith_gon,distance_m,from_s,to_s");
+  out.end_line();
   for (const auto& station : stations) {
     for (const auto& s : station.sightings) {
-      out.row("{},{},{:.7f},{:.7f},{:.6f},{},{}", station.name, s.point, s.direction / units::gon,
-              s.zenith / units::gon, s.distance, ExactSeconds{station.from.value_or(Time{})},
-              ExactSeconds{station.to.value_or(Time{})});
+      out.print("{},{},{:.7f},{:.7f},{:.6f},{},{}\n", station.name, s.point, s.direction / units::gon,
+                s.zenith / units::gon, s.distance, seconds_text(station.from.value_or(Time{})),
+                seconds_text(station.to.value_or(Time{})));
     }
   }
   return out.close();
@@ -99,7 +111,9 @@ Expected<void> write_readings(const std::filesystem::path& path, const std::vect
 template <class Samples, class Row>
 Expected<void> write_signal(const std::filesystem::path& path, std::string_view header, const Samples& samples,
                             const Row& row) {
-  CsvWriter out(path, header);
+  TextOutput out(path);
+  out.text(header);
+  out.end_line();
   for (const auto& s : samples) row(out, s);
   return out.close();
 }
@@ -118,31 +132,32 @@ Expected<std::vector<std::string>> write_recording(const std::filesystem::path& 
   put(!r.imu.empty(), "imu.csv", [&](const auto& path) { return write_imu(path, r.imu, output.imu_rates); });
   for (std::size_t i = 0; i < r.odometers.size(); ++i) {
     put(!r.odometers[i].empty(), fmt::format("odometer_{}.csv", i + 1), [&](const auto& path) {
-      return write_signal(path, "time_s,distance_m", r.odometers[i], [](CsvWriter& out, const auto& s) {
-        out.row("{},{:.6f}", ExactSeconds{s.time}, s.distance);
+      return write_signal(path, "time_s,distance_m", r.odometers[i], [](TextOutput& out, const auto& s) {
+        out.print("{},{:.6f}\n", seconds_text(s.time), s.distance);
       });
     });
   }
   put(!r.gauge.empty(), "gauge.csv", [&](const auto& path) {
-    return write_signal(path, "time_s,gauge_mm,temperature_degc", r.gauge, [](CsvWriter& out, const auto& s) {
-      out.row("{},{:.4f},{:.2f}", ExactSeconds{s.time}, s.reading / units::mm, s.temperature);
+    return write_signal(path, "time_s,gauge_mm,temperature_degc", r.gauge, [](TextOutput& out, const auto& s) {
+      out.print("{},{:.4f},{:.2f}\n", seconds_text(s.time), s.reading / units::mm, s.temperature);
     });
   });
   put(!r.sleeper.empty(), "sleeper.csv", [&](const auto& path) {
-    return write_signal(path, "time_s,range_m", r.sleeper,
-                        [](CsvWriter& out, const auto& s) { out.row("{},{:.4f}", ExactSeconds{s.time}, s.range); });
+    return write_signal(path, "time_s,range_m", r.sleeper, [](TextOutput& out, const auto& s) {
+      out.print("{},{:.4f}\n", seconds_text(s.time), s.range);
+    });
   });
   put(!r.gnss.empty(), "gnss.csv", [&](const auto& path) { return write_gnss(path, r.gnss); });
   put(!r.landmarks.empty(), "landmarks.csv", [&](const auto& path) { return write_landmarks(path, r.landmarks); });
   put(!r.control_points.empty(), "control.csv", [&](const auto& path) { return write_control(path, r); });
   put(!r.stationings.empty(), "readings.csv", [&](const auto& path) { return write_readings(path, r.stationings); });
   put(!r.axle_box.vertical.empty(), "axle_box.h5", [&](const auto& path) {
-    Hdf5Columns file(path, r.scale);
-    file.attribute("start_ns", static_cast<double>(r.axle_box.start.ns));
-    file.attribute("rate_hz", r.axle_box.rate);
-    const std::vector<double> values(r.axle_box.vertical.begin(), r.axle_box.vertical.end());
-    file.column("", "vertical", "m/s^2", values);
-    return file.close();
+    auto file = Hdf5File::create(path);
+    if (!file) return Expected<void>(tl::unexpected(std::move(file.error())));
+    file->write("start_ns", std::vector<std::int64_t>{r.axle_box.start.ns}, "ns");
+    file->write("rate_hz", std::vector<double>{r.axle_box.rate}, "Hz");
+    file->write("vertical_mps2", r.axle_box.vertical, "m/s^2");
+    return file->close();
   });
   if (!done) return tl::unexpected(std::move(done.error()));
   return names;

@@ -26,6 +26,6 @@ struct SimulateRun {
                                                  Progress& progress);
 
 /// The survey job that processes such a recording, as TOML.
-[[nodiscard]] std::string survey_job(const SimulateConfig& config, const simulation::SimulatedRecording& recording);
+[[nodiscard]] std::string survey_job_for(const SimulateConfig& config, const simulation::SimulatedRecording& recording);
 
 }  // namespace versine::app

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "versine/app/config.hpp"
+#include "versine/app/recording_config.hpp"
 #include "versine/simulation/scenario.hpp"
 
 /// The scenario file of `versine simulate`.
@@ -36,7 +37,7 @@ struct SimulateConfig {
   std::vector<design::CantPoint> cant;
   std::vector<design::ChainageEquation> chainage;
   // The instrument.
-  std::string imu_grade = "navigation-rlg";
+  ImuErrorsConfig imu_errors;
   bool has_vehicle = false, has_imu = false, has_gauge = false, has_sleeper = false, has_gnss = false,
        has_total_station = false, has_axle_box = false;
   simulation::Vehicle vehicle;
