@@ -22,6 +22,7 @@ enum Exit : int {
 void add_check(CLI::App& app, int& exit);
 void add_georef(CLI::App& app, int& exit);
 void add_init(CLI::App& app, int& exit);
+void add_network(CLI::App& app, int& exit);
 void add_simulate(CLI::App& app, int& exit);
 void add_survey(CLI::App& app, int& exit);
 void add_compare(CLI::App& app, int& exit);

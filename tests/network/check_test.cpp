@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "versine/network/check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "versine/network/build.hpp"
+
+namespace versine::network {
+namespace {
+
+TEST(Check, FindsNearMissesIsolatedPiecesAndKinks) {
+  NetworkSource s;
+  s.crs = "EPSG:32632";
+  const Eigen::Vector2d o(500000.0, 5500000.0);
+  const auto line = [&](const char* id, std::vector<Eigen::Vector2d> p) {
+    for (auto& q : p) q += o;
+    s.tracks.push_back({id, p, 0, {}, {}, {}});
+  };
+  line("stem", {{0, 0}, {100, 0}});
+  line("main", {{100.3, 0}, {200, 0}});
+  line("leg", {{100, 0}, {200, 11}});
+  line("alone", {{0, 500}, {0.09, 500}});
+  line("bent", {{200, 0}, {250, 0}, {280, 20}});
+  const auto n = build(s);
+  ASSERT_TRUE(n);
+  const auto c = check(*n);
+  EXPECT_EQ(c.switches, 1u);
+  EXPECT_EQ(c.pieces, 2u);
+  const auto count = [&](const char* kind) {
+    return std::count_if(c.findings.begin(), c.findings.end(), [&](const auto& f) { return f.kind == kind; });
+  };
+  EXPECT_EQ(count("near miss"), 1);
+  EXPECT_EQ(count("isolated piece"), 1);
+  EXPECT_EQ(count("kink"), 1);
+}
+
+}  // namespace
+}  // namespace versine::network
