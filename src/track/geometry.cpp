@@ -47,7 +47,7 @@ double Geometry::posted_at(double continuous) const {
                                    [](double s, const PostedMileage& p) { return s < p.start; });
   if (posted.empty()) return continuous;
   const PostedMileage& piece = it == posted.begin() ? posted.front() : *std::prev(it);
-  return piece.posted_start + (continuous - piece.start);
+  return piece.posted_start + (piece.increasing ? 1.0 : -1.0) * (continuous - piece.start);
 }
 
 std::size_t Geometry::index_at(double continuous) const {

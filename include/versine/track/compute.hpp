@@ -14,7 +14,7 @@
 #include "versine/track/trolley.hpp"
 
 namespace versine::design {
-class Alignment;
+struct Alignment;
 }
 
 namespace versine::track {
@@ -64,29 +64,36 @@ struct Band {
 };
 
 enum class RailPoint { gauge_corner, head_centre };
-enum class Travel { automatic, increasing, decreasing };  ///< mileage along the trolley's x axis
+enum class Travel { increasing, decreasing };       ///< mileage along the trolley's x axis, without design and marks
+enum class MileageSource { trajectory, odometer };  ///< without design
+enum class HeightReference { low_rail, axis };      ///< what the design's heights belong to where there is cant
 
 struct GeometryOptions {
   double step = 0.25;            ///< of the result, m
   double fit_half_width = 0.5;   ///< of the moving least squares in easting and northing, m
   double average_window = 0.25;  ///< of the moving average of heights, cross level and gauge, m
   RailPoint rail_point = RailPoint::gauge_corner;
-  double head_width = 0.072;     ///< of the rail, m; half of it separates gauge corner and head centre
   double nominal_gauge = 1.435;  ///< m, where the design tells none
-  double rail_distance = 1.5;    ///< hypotenuse of the cross level, m
+  double rail_distance = 1.5;    ///< hypotenuse of the cross level: distance of the head centres, m
   double gauge_median = 0.15;    ///< window of the median filter against rail joints, m
   double curvature_base = 20.0;  ///< over which curvature and gradient are formed, m
   std::vector<double> twist_bases = {3.0};
   std::vector<Chord> chords = {{10.0, 5.0}, {20.0, 10.0}};
   std::vector<ChordCheck> checks = {{"30m", 30.0, 15.0, 5.0}, {"300m", 300.0, 15.0, 150.0}};
   std::vector<Band> bands = {{"d1", 3.0, 25.0}, {"d2", 25.0, 70.0}};
-  int filter_order = 4;  ///< poles of the band-pass in one pass
-  Travel travel = Travel::automatic;
+  int filter_order = 4;  ///< of the low-pass prototype of the bands, see band_pass
+  Travel travel = Travel::increasing;
+  MileageSource mileage_source = MileageSource::trajectory;
+  HeightReference height_reference = HeightReference::low_rail;
+  double max_gap = 1.0;        ///< between samples that are joined by interpolation, m
   double start_mileage = 0.0;  ///< without design and marks, m
   double max_offset = 5.0;     ///< from the design axis, beyond which a point is off the design, m
 };
 
-/// Track geometry of a run. Pure; linear in the length of the run.
+/// Track geometry of a run. A rail's point has the lateral place of its gauge corner (or head centre) in the plane of
+/// the running surfaces, and the height of its head centre, rail_distance apart, so that the heights differ by the
+/// cross level exactly. Without design, deviations and chord checks are absent and alignment is band-filtered from the
+/// rails' curvature. Relative values get their sigma from `chain`. Pure; linear in the length of the run.
 /// Fails when the run and the design do not meet, when the trajectory is empty or does not move, or when marks
 /// contradict the direction of travel; everything else that is wrong is flagged in the result and told in its record.
 [[nodiscard]] Expected<Geometry> compute_geometry(const GeometryInput& input, const GeometryOptions& options,

@@ -40,6 +40,7 @@ enum Flag : std::uint32_t {
 struct PostedMileage {
   double start = 0.0;         ///< continuous mileage where this piece begins, m
   double posted_start = 0.0;  ///< chainage there, m
+  bool increasing = true;     ///< chainage grows with continuous mileage
 };
 
 /// A detected or mended sleeper.

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "parameters.hpp"
+#include "versine/geodesy/ellipsoid.hpp"
+#include "versine/track/butterworth.hpp"
+
+namespace versine::track {
+namespace {
+
+/// Lateral course of a rail without design: its second differences, freed from everything longer than four times
+/// `longest` (the design's curves), summed up twice. The band-pass behind it does the rest.
+std::vector<double> unrolled(const RailLine& line, double step, double longest) {
+  const std::size_t n = line.ecef.size();
+  std::vector<double> bend(n, std::numeric_limits<double>::quiet_NaN());
+  const double k = 1.0 / (1.0 - geodesy::wgs84.e2());
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const Eigen::Vector3d &P = line.ecef[i], &A = line.ecef[i - 1], &B = line.ecef[i + 1];
+    const Eigen::Vector3d up = Eigen::Vector3d(P.x(), P.y(), P.z() * k).normalized();
+    bend[i] = -2.0 * (P - A).cross(B - A).dot(up) / (B - A).norm();  // second difference, positive to the right
+  }
+  const auto smooth =
+      filter_both_ways(low_pass(4.0 * longest, step, 4), bend, static_cast<std::size_t>(8.0 * longest / step));
+  std::vector<double> out(n, std::numeric_limits<double>::quiet_NaN());
+  double slope = 0.0, y = 0.0;
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    if (!std::isfinite(bend[i])) {
+      slope = y = 0.0;
+      continue;
+    }
+    out[i] = y;
+    slope += bend[i] - smooth[i];
+    y += slope;
+  }
+  return out;
+}
+
+std::size_t settle(const Band& band, double step) {
+  return static_cast<std::size_t>(3.0 * band.longest / step);
+}
+
+void add_band(Stage& s, const Band& band, Rail rail, bool lateral, const std::vector<double>& signal,
+              const char* source) {
+  const auto sections = band_pass(band.shortest, band.longest, s.options.step, s.options.filter_order);
+  Column& c = s.out.add(
+      fmt::format("{}_{}_{}", lateral ? "alignment" : "level", name_of(rail), band.name), "mm", 1e-3,
+      fmt::format(
+          "{} of the {} rail, {} to {}, from {}; Butterworth order {}, forward and backward, -3 dB at the edges",
+          lateral ? "Alignment" : "Longitudinal level", name_of(rail), metres(band.shortest), metres(band.longest),
+          source, s.options.filter_order));
+  c.value = filter_both_ways(sections, signal, settle(band, s.options.step));
+  // Bounded by the versine of a chord as long as the band's longest wavelength: its gain is 1 or more over the band.
+  const double half = std::max(5.0, 5.0 * std::round(band.longest / 10.0));
+  const bool reference = (rail == Rail::left) == s.rails.reference_is_left;
+  s.relative.fill(c, rail, lateral ? Direction::lateral : Direction::vertical,
+                  {{-half, -0.5}, {0.0, 1.0}, {half, -0.5}},
+                  s.input.trolley.contact_sigma * (reference ? std::sqrt(0.5) : 1.0));
+}
+
+/// Points near the ends of each piece, where the longest band has not settled.
+void flag_edges(Geometry& out, double longest) {
+  const auto reach = static_cast<std::size_t>(longest / out.step);
+  const auto missing = [&](std::size_t i) { return (out.flags[i] & no_trajectory) != 0; };
+  std::size_t last = 0;  // first point of the current piece
+  const std::size_t n = out.size();
+  for (std::size_t i = 0; i <= n; ++i) {
+    if (i < n && !missing(i)) continue;
+    for (std::size_t k = last; k < i; ++k) {
+      if (k - last < reach || i - k <= reach) out.flags[k] |= band_edge;
+    }
+    last = i + 1;
+  }
+}
+
+}  // namespace
+
+void add_bands(Stage& s) {
+  std::vector<Band> bands;
+  double longest = 0.0;
+  for (const Band& band : s.options.bands) {
+    if (band.shortest > 2.0 * s.options.step && band.longest > band.shortest) {
+      bands.push_back(band);
+      longest = std::max(longest, band.longest);
+    } else {
+      s.out.record.warnings.push_back(fmt::format("band {} ({} to {} m) needs a step below {} m: left out", band.name,
+                                                  band.shortest, band.longest, 0.5 * band.shortest));
+    }
+  }
+  if (bands.empty()) return;
+  for (const Rail rail : {Rail::left, Rail::right}) {
+    const Column* lateral = s.out.find(fmt::format("deviation_lateral_{}", name_of(rail)));
+    const Column* vertical = s.out.find(fmt::format("deviation_vertical_{}", name_of(rail)));
+    std::vector<double> y =
+        lateral != nullptr ? lateral->value : unrolled(line_of(s.rails, rail), s.options.step, longest);
+    const std::vector<double> z = vertical != nullptr ? vertical->value : line_of(s.rails, rail).height;
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      if (!placed(s.rails, rail, i)) y[i] = std::numeric_limits<double>::quiet_NaN();
+    }
+    const char* from_y = lateral != nullptr ? "deviation from design" : "the rail's curvature";
+    const char* from_z = vertical != nullptr ? "deviation from design" : "heights";
+    for (const Band& band : bands) {
+      add_band(s, band, rail, true, y, from_y);
+      add_band(s, band, rail, false, z, from_z);
+    }
+  }
+  flag_edges(s.out, longest);
+}
+
+}  // namespace versine::track
