@@ -44,7 +44,8 @@ class Program {
       const int bend = column(o.smooth_weight);
       absolute(bend, {{i - 1, 0.5}, {i, -1.0}, {i + 1, 0.5}}, 0.5 * (w.e[k - 1] + w.e[k + 1]) - w.e[k]);
     }
-    for (std::size_t c = 0; c < o.checks.size(); ++c) add_check(o.checks[c], o.check_limits[c]);
+    for (std::size_t c = 0; c < o.checks.size(); ++c)
+      add_check(o.checks[c], 0.9 * o.check_limits[c]);  // the rest for between the points
   }
 
   std::vector<double> solve() {
@@ -154,7 +155,8 @@ Expected<Adjustment> plan_adjustment(std::span<const double> mileage, std::span<
       w.known.push_back(a > 0 && k < a + hop / 2 ? x[k] : std::nan(""));
     }
     const std::vector<double> solved = Program(o, w).solve();
-    for (std::size_t k = a; k < b; ++k) x[k] = solved[k - a];
+    for (std::size_t k = a; k < b; ++k)
+      x[k] = std::clamp(solved[k - a], o.smallest, o.largest);  // Clp's tolerance is 1e-7
     if (b == n) break;
   }
   out.movement.assign(mileage.size(), 0.0);
