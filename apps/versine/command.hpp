@@ -21,6 +21,7 @@ enum Exit : int {
 /// commands/, its line here and its place in main.cpp's list, which is the order of the help.
 void add_check(CLI::App& app, int& exit);
 void add_georef(CLI::App& app, int& exit);
+void add_info(CLI::App& app, int& exit);
 void add_init(CLI::App& app, int& exit);
 void add_network(CLI::App& app, int& exit);
 void add_simulate(CLI::App& app, int& exit);

@@ -38,6 +38,8 @@ class TableReader {
   /// A column as text; nothing if there is none.
   [[nodiscard]] std::optional<Slot> find_text(std::string_view base);
   [[nodiscard]] bool has(std::string_view base) const;
+  /// Any column as text, by its index; for looking into a file.
+  [[nodiscard]] Slot text_column(std::size_t column) { return slot_for(column, Kind::text, 1.0, 0, "text"); }
 
   /// The next row; false at the end and on an Error. Rows with too few or too many fields are left out and logged.
   [[nodiscard]] bool next();
@@ -51,6 +53,7 @@ class TableReader {
   [[nodiscard]] const std::string& label(Slot slot) const { return slots_[slot].label; }  ///< name in the file
 
   [[nodiscard]] const std::vector<std::string>& header() const { return header_; }  ///< Versine's names, with units
+  [[nodiscard]] const std::vector<std::string>& written() const { return written_; }  ///< as in the file
   [[nodiscard]] const std::string& name() const { return lines_.name(); }
   [[nodiscard]] std::size_t line_number() const { return lines_.line_number(); }
   [[nodiscard]] std::size_t rows() const { return rows_; }     ///< given so far
