@@ -5,6 +5,7 @@ option(VERSINE_BENCHMARKS "Build the kernel benchmarks" OFF)
 option(VERSINE_VIEWER "Build the web viewer's page into the program (needs node and npm)" ON)
 option(VERSINE_WERROR "Treat warnings as errors" ON)
 option(VERSINE_SANITIZE "Build with address and undefined-behaviour sanitizers" OFF)
+option(VERSINE_FUZZ "Build the fuzzing programs of the text readers (clang)" OFF)
 option(VERSINE_COVERAGE "Build with coverage counters" OFF)
 
 set(CMAKE_CXX_STANDARD 20)

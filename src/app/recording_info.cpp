@@ -109,6 +109,16 @@ Expected<RecordingInfo> trajectory_info(const std::filesystem::path& path, Recor
   return info;
 }
 
+// Names that readers look for (docs/formats.md).
+constexpr std::array<std::string_view, 48> known_columns{
+    "time",           "tow",           "gps_week",      "week",        "time_of_day", "time_utc",   "timestamp",
+    "datetime",       "gyro_x",        "gyro_y",        "gyro_z",      "accel_x",     "accel_y",    "accel_z",
+    "dtheta_x",       "dtheta_y",      "dtheta_z",      "dvel_x",      "dvel_y",      "dvel_z",     "latitude",
+    "longitude",      "height",        "north",         "east",        "down",        "up",         "easting",
+    "northing",       "hdop",          "vdop",          "sigma_north", "sigma_east",  "sigma_down", "sigma_up",
+    "velocity_north", "velocity_east", "velocity_down", "velocity_up", "distance",    "count",      "speed",
+    "gauge",          "temperature",   "range",         "heading",     "roll",        "pitch"};
+
 /// Running statistics of a column.
 struct Column {
   io::TableReader::Slot slot = 0;
@@ -176,6 +186,8 @@ void guess_gravity(RecordingInfo& info) {
         std::max_element(mean.begin(), mean.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }) -
         mean.begin());
     if (!named || !unit || std::abs(mean[at]) < 0.8 * size) continue;
+    // Gravity is steady; the noise of a gyroscope may have any mean.
+    if (c[at].max - c[at].min > 4.0 * std::abs(mean[at])) continue;
     const char* const axis[] = {"x", "y", "z"};
     const bool up = mean[at] > 0.0;
     info.guesses.push_back(
@@ -251,7 +263,8 @@ Expected<RecordingInfo> table_info(const std::filesystem::path& path, RecordingI
     Column column{.slot = table->text_column(i)};
     column.info.name = headerless ? fmt::format("column {}", i + 1) : table->written()[i];
     const auto name = io::split_column_name(table->header()[i]);
-    if (!headerless && name.unit != nullptr) column.info.versines = table->header()[i];
+    const bool known = std::find(known_columns.begin(), known_columns.end(), name.base) != known_columns.end();
+    if (!headerless && known) column.info.versines = table->header()[i];
     columns.push_back(std::move(column));
   }
   while (table->next()) {
@@ -259,6 +272,14 @@ Expected<RecordingInfo> table_info(const std::filesystem::path& path, RecordingI
   }
   if (table->error()) return fail(*table->error());
   info.samples = table->rows();
+  if (const auto fine = table->faults().tolerable(table->name(), table->rows()); !fine)
+    return tl::unexpected(fine.error());
+  if (std::all_of(columns.begin(), columns.end(), [](const Column& c) { return c.info.numbers == 0; })) {
+    return fail({.file = table->name(),
+                 .found = "no column of numbers",
+                 .expected = "a recording: CSV, RTKLIB .pos, NMEA 0183 or trajectory.h5",
+                 .advice = "name a file that a sensor wrote; docs/formats.md describes what can be read"});
+  }
   const char divider = table->delimiter();
   info.format = fmt::format("table {}, divided by {}", headerless ? "without header" : "with header",
                             divider == ' '    ? "blanks"

@@ -42,7 +42,7 @@ std::string to_text(const RecordingInfo& info) {
     text += fmt::format("\n  {:24} {:26} {:>13} {:>13} {:>13}\n", "column", "read as", "least", "mean", "greatest");
   }
   for (const ColumnInfo& c : info.columns) {
-    const std::string as = c.versines.empty() ? "needs [columns]" : c.versines;
+    const std::string as = c.versines.empty() ? "(not by itself)" : c.versines;
     if (c.numbers == 0) {
       text += fmt::format("  {:24} {:26} text, such as '{}'\n", c.name, as, c.example);
       continue;

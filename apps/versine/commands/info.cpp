@@ -18,7 +18,8 @@ void add_info(CLI::App& app, int& exit) {
       ->required();
   command->add_flag("--json", options->json, "Print JSON");
   command->footer(
-      "Example: versine info imu.csv.zst\nColumns marked 'needs [columns]' must be named in the job, with their unit.");
+      "Example: versine info imu.csv.zst\nColumns marked '(not by itself)' are read when [columns] of the job names "
+      "them, with their unit.");
   command->callback([options, &exit] {
     for (const std::string& file : options->files) {
       const auto info = app::recording_info(file);
