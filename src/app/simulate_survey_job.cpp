@@ -28,6 +28,11 @@ std::string survey_job_for(const SimulateConfig& c, const simulation::SimulatedR
   }
   if (!r.gnss.empty()) {
     text += fmt::format("\n[gnss]\nfile = \"gnss.csv\"\nlever_arm_m = {}\n", list(C_bv * c.gnss.antenna));
+    // A receiver tells one sigma; that part of its errors stays alike for minutes is for the job to say.
+    if (c.gnss.correlated_horizontal > 0.0) {
+      text += fmt::format("bias_sigma_m = {:.6g}\nbias_time_s = {:.6g}\n", c.gnss.correlated_horizontal,
+                          c.gnss.correlation_time);
+    }
   }
   for (std::size_t i = 0; i < r.odometers.size(); ++i) {
     if (r.odometers[i].empty()) continue;

@@ -42,6 +42,15 @@ TEST(Synthesize, DensityMatchesTheRequestedSpectrum) {
       const auto x = synthesize(spectrum, kind, step, 400000, 2.0, 150.0, 5);
       const auto density = welch(x, step, n);
       const double df = 1.0 / (static_cast<double>(n) * step);
+      double rms_found = 0.0, rms_wanted = 0.0;
+      for (std::size_t k = 1; k < density.size(); ++k) {
+        const double f = static_cast<double>(k) * df;
+        if (f < 1.0 / 70.0 || f > 1.0 / 3.0) continue;
+        rms_found += density[k] * df, rms_wanted += spectral_density(spectrum, kind, f) * df;
+      }
+      static constexpr const char* kinds[] = {"level", "alignment", "cross_level", "gauge"};
+      RecordProperty(std::string(name) + "_" + kinds[static_cast<int>(kind)],
+                     std::to_string(1e3 * std::sqrt(rms_found)) + " of " + std::to_string(1e3 * std::sqrt(rms_wanted)));
       // Octave bands within the wavelengths 2.5 m to 100 m.
       for (double low = 0.01; low < 0.4; low *= 2.0) {
         double found = 0.0, wanted = 0.0;
