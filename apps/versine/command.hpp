@@ -28,6 +28,7 @@ void add_simulate(CLI::App& app, int& exit);
 void add_survey(CLI::App& app, int& exit);
 void add_compare(CLI::App& app, int& exit);
 void add_alignment(CLI::App& app, int& exit);
+void add_plan(CLI::App& app, int& exit);
 
 /// Options that every job command has.
 struct JobOptions {

@@ -35,7 +35,10 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
   int exit = good;
-  for (const auto add : {add_init, add_check, add_info, add_simulate, add_survey, add_compare, add_alignment, add_georef, add_network}) add(app, exit);
+  for (const auto add : {add_init, add_check, add_info, add_simulate, add_survey, add_plan, add_compare, add_alignment,
+                         add_georef, add_network}) {
+    add(app, exit);
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

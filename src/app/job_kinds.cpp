@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "versine/app/plan.hpp"
 #include "versine/app/simulate_job.hpp"
 #include "versine/app/survey_job.hpp"
 
@@ -21,7 +22,7 @@ std::string names() {
 }  // namespace
 
 std::span<const JobKind> job_kinds() {
-  static const std::array kinds{survey_job, simulate_job};
+  static const std::array kinds{survey_job, simulate_job, plan_job};
   return kinds;
 }
 

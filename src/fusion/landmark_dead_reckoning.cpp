@@ -149,7 +149,7 @@ Eigen::Vector3d lever_n(const Node& node, double heading, double pitch, const La
   const Eigen::Quaterniond correction =
       geodesy::from_rotation_vector({-pitch * std::sin(yaw), pitch * std::cos(yaw), 0.0}) *
       Eigen::Quaterniond(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()));
-  return correction * (node.q_nv * (o.lever_landmark - o.lever_odometer));
+  return correction * (node.q_nv * (geodesy::to_matrix(o.mounting) * (o.lever_landmark - o.lever_odometer)));
 }
 
 Tie make_tie(const sensors::LandmarkSample& l, std::size_t index, std::size_t k, const Node& node,
@@ -233,7 +233,7 @@ Expected<void> report_landmarks(const LandmarkInput& in, const Placement& p, con
                  .expected = "most of them, within the sigmas given",
                  .advice =
                      "check coordinate system, height datum, units and lever arm of the landmarks, the odometer's "
-                     "scale, and whether their sigma is as small as stated"});
+                     "scale, a heading given for the start, and whether all sigmas are as small as stated"});
   }
   if (unchecked > 0) {
     record.warnings.push_back(

@@ -124,6 +124,7 @@ geodesy::Trajectory corrected_trajectory(Reckoning reckoning, const Smoothed& sm
                                          const LandmarkOptions& options) {
   const auto& nodes = reckoning.nodes;
   const Eigen::Quaterniond q_vb = geodesy::to_quaternion(options.mounting);
+  const Eigen::Vector3d lever = q_vb * options.lever_odometer;
   const bool has_lever = options.lever_odometer.squaredNorm() > 0.0;
   const Eigen::Matrix2d turn = (1.0 - scale) * to_north_east(heading);
   geodesy::Trajectory result;
@@ -152,7 +153,7 @@ geodesy::Trajectory corrected_trajectory(Reckoning reckoning, const Smoothed& sm
       p.v_eb_n = c[7] * Eigen::Vector3d(1.0 - 2.0 * (q_nv.y() * q_nv.y() + q_nv.z() * q_nv.z()),
                                         2.0 * (q_nv.x() * q_nv.y() + q_nv.w() * q_nv.z()),
                                         2.0 * (q_nv.x() * q_nv.z() - q_nv.w() * q_nv.y()));
-      if (has_lever) at -= q_nv * options.lever_odometer;
+      if (has_lever) at -= q_nv * lever;
       p.position = {from.latitude + north * at.x(), from.longitude + east * at.y(), from.height - at.z()};
       p.q_nb = q_nv * q_vb;
       p.q_nb.coeffs() *= 1.5 - 0.5 * p.q_nb.squaredNorm();  // one Newton step to unit length

@@ -37,8 +37,8 @@ struct LandmarkOptions {
 
   geodesy::Euler mounting;                                   ///< IMU b in the trolley v: x_v = to_matrix(mounting) x_b
   double mounting_sigma = 0.2e-3;                            ///< rad, each angle, after calibration
-  Eigen::Vector3d lever_odometer = Eigen::Vector3d::Zero();  ///< m, v-frame, from the IMU to the point that follows x_v
-  Eigen::Vector3d lever_landmark = Eigen::Vector3d::Zero();  ///< m, v-frame, from the IMU to prism or total station
+  Eigen::Vector3d lever_odometer = Eigen::Vector3d::Zero();  ///< m, b-frame, from the IMU to the point that follows x_v
+  Eigen::Vector3d lever_landmark = Eigen::Vector3d::Zero();  ///< m, b-frame, from the IMU to prism or total station
 
   LandmarkSmoother smoother = LandmarkSmoother::rts;
   double gate = 4.0;                   ///< largest normalised residual of a landmark that is used
