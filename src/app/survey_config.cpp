@@ -123,6 +123,15 @@ void describe_wheels(ConfigVisitor& v, SurveyConfig& c) {
     t.value("on", e.zero_velocity, {.doc = "Detect standstill and use it."});
     t.value("minimum_s", e.standstill.minimum, seconds("Shorter ones are not used."));
     t.value("margin_s", e.standstill.margin, seconds("Taken off both ends, where the vehicle still rocks."));
+    t.value("acceleration_spread_mps2", e.standstill.acceleration_spread,
+            {.doc = "Standard deviation of the specific force in one second that still counts as standing.",
+             .unit = "m/s^2", .positive = true});
+    t.value("rate_spread_radps", e.standstill.rate_spread, {.doc = "The same of the angular rate.", .unit = "rad/s",
+                                                            .positive = true});
+    t.value("rate_mean_radps", e.standstill.rate_mean, {.doc = "Mean angular rate beyond the gyros' bias.",
+                                                        .unit = "rad/s", .positive = true});
+    t.value("zero_rate_sigma_radps", e.zero_rate_sigma, {.doc = "Of the zero angular rate, beyond the gyros' noise.",
+                                                         .unit = "rad/s", .positive = true});
     t.value("sigma_mps", e.zero_velocity_sigma, speed("Of the zero velocity."));
     t.value("interval_s", e.zero_interval, seconds("Between two updates while standing."));
   });

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/SVD>
+
 #include <algorithm>
 #include <cmath>
 
@@ -59,28 +61,88 @@ Expected<Mean> levelling_mean(const sensors::ImuSeries& imu, const Interval& spa
 }
 }  // namespace
 
+namespace {
+/// Mean specific force over one window, in the b-frame of the start and, as gravity says it must be, in the n-frame of
+/// the start; neither frame turns in inertial space.
+struct ForcePair {
+  Vector3d measured, expected;
+};
+
+std::vector<ForcePair> force_pairs(const sensors::ImuSeries& imu, const Interval& standing,
+                                   const geodesy::Geodetic& position, double window,
+                                   const geodesy::Ellipsoid& ellipsoid) {
+  const geodesy::LocalEarth earth = ellipsoid.at(position.latitude, position.height);
+  const Vector3d omega = earth_rate(earth, ellipsoid.omega());
+  std::vector<ForcePair> pairs;
+  Eigen::Quaterniond q_start_b = Eigen::Quaterniond::Identity();
+  Vector3d sum = Vector3d::Zero();
+  double seconds = 0.0, middle = 0.0;
+  for (const auto& s : imu.between({standing.from.ns + 1}, {standing.to.ns + 1})) {
+    const Eigen::Quaterniond half = geodesy::from_rotation_vector(0.5 * s.dtheta);
+    sum += (q_start_b * half) * s.dvel;
+    q_start_b = q_start_b * half * half;
+    seconds += imu.interval.seconds();
+    if (seconds + 1e-9 < window) continue;
+    middle += 0.5 * seconds;
+    pairs.push_back({sum / seconds, geodesy::from_rotation_vector(omega * middle) * -earth.gravity_ned});
+    middle += 0.5 * seconds;
+    sum.setZero();
+    seconds = 0.0;
+  }
+  return pairs;
+}
+
+/// The rotation that takes the measured forces to the expected ones with least squares (Kabsch 1976).
+Eigen::Matrix3d best_rotation(const std::vector<ForcePair>& pairs) {
+  Eigen::Matrix3d b = Eigen::Matrix3d::Zero();
+  for (const ForcePair& p : pairs) b += p.expected * p.measured.transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(b, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
+  return svd.matrixU() * Vector3d(1.0, 1.0, sign).asDiagonal() * svd.matrixV().transpose();
+}
+
+/// Sigma of the slope of the level residuals, rad/s: what rocking, vibration and accelerometer noise leave in the drift
+/// of the vertical. Neighbouring residuals that are alike carry less: the lag-one correlation widens it.
+double drift_sigma(const std::vector<ForcePair>& pairs, const Eigen::Matrix3d& rotation, double window) {
+  double square = 0.0, product = 0.0;
+  Eigen::Vector2d before = Eigen::Vector2d::Zero();
+  for (const ForcePair& p : pairs) {
+    const Eigen::Vector2d r = (rotation * p.measured - p.expected).head<2>() / p.expected.norm();
+    square += r.squaredNorm();
+    product += r.dot(before);
+    before = r;
+  }
+  const auto n = static_cast<double>(pairs.size());
+  const double correlation = std::clamp(square > 0.0 ? product / square : 0.0, 0.0, 0.95);
+  const double variance = square / std::max(1.0, 2.0 * n - 3.0) * (1.0 + correlation) / (1.0 - correlation);
+  return std::sqrt(12.0 * variance / (n * (n * n - 1.0))) / window;
+}
+}  // namespace
+
 Expected<InitialAlignment> gyrocompass(const sensors::ImuSeries& imu, const Interval& standing,
                                        const geodesy::Geodetic& position, const sensors::ImuErrors& errors,
                                        const geodesy::Ellipsoid& ellipsoid) {
   const Expected<Mean> m = levelling_mean(imu, standing);
   if (!m) return fail(m.error());
-  // Level first; then the horizontal part of the Earth rate points north: rate_level = (c cos yaw, -c sin yaw, .).
-  const Eigen::Matrix3d C_level_b = geodesy::to_matrix(levelled(m->force, 0.0));
-  const Vector3d rate = C_level_b * m->rate;
+  const double window = std::clamp(m->seconds / 12.0, 2.0 * imu.interval.seconds(), 10.0);
+  const std::vector<ForcePair> pairs = force_pairs(imu, standing, position, window, ellipsoid);
   const double horizontal = ellipsoid.omega() * std::cos(position.latitude);
   const double gyro = std::hypot(total_bias(errors.gyro), errors.gyro.random_walk / std::sqrt(m->seconds));
   const double tilt = std::hypot(total_bias(errors.accelerometer) / 9.78, 2e-5);
-  const double heading_sigma = std::hypot(gyro / horizontal, tilt * std::abs(std::tan(position.latitude)));
+  const Eigen::Matrix3d C_nb = best_rotation(pairs);
+  const double drift = pairs.size() > 3 ? drift_sigma(pairs, C_nb, window) : horizontal;
+  const double heading_sigma =
+      std::hypot(std::hypot(gyro, drift) / horizontal, tilt * std::abs(std::tan(position.latitude)));
   if (!(heading_sigma < 30.0 * units::deg)) {
     return fail({.field = "alignment",
-                 .found = fmt::format("gyros with a rate error of {:.1f} deg/h after {:.0f} s",
-                                      gyro / units::deg_per_hour, m->seconds),
-                 .expected = "gyros that resolve the Earth's rotation (heading sigma below 30 degrees)",
-                 .advice = "give an initial heading, or take it from the GNSS course"});
+                 .found = fmt::format("gyros with a rate error of {:.1f} deg/h after {:.0f} s, and a vertical known to "
+                                      "{:.1f} deg/h",
+                                      gyro / units::deg_per_hour, m->seconds, drift / units::deg_per_hour),
+                 .expected = "an instrument and a standstill that resolve the Earth's rotation (heading sigma below 30 "
+                             "degrees)",
+                 .advice = "stand still longer, give an initial heading, or take it from the GNSS course"});
   }
-  const double yaw = std::atan2(-rate.y(), rate.x());
-  return InitialAlignment{
-      standing.to, geodesy::to_quaternion(levelled(m->force, yaw)), {tilt, tilt, heading_sigma}, "gyrocompass"};
+  return InitialAlignment{standing.from, Eigen::Quaterniond(C_nb), {tilt, tilt, heading_sigma}, "gyrocompass"};
 }
 
 Expected<InitialAlignment> level_with_heading(const sensors::ImuSeries& imu, const Interval& span, double heading,

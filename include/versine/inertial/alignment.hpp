@@ -19,10 +19,13 @@ struct InitialAlignment {
   std::string method;                               ///< "gyrocompass", "course", "given", "previous segment"
 };
 
-/// Coarse alignment of a standing IMU: level from the mean specific force, heading from the mean angular rate (Groves
-/// 2013 section 5.6.2). The sigmas follow from the IMU's errors and the duration: level `bias / g`, heading
-/// `rate error / (omega cos latitude)`. Fails with the reason when a gyro that resolves no Earth rate (heading sigma
-/// above 30 degrees) is asked for heading, or when the force is not that of gravity.
+/// Coarse alignment of a standing IMU at the beginning of `standing`. The gyros carry the specific force into a frame
+/// that does not turn in inertial space; there gravity turns with the Earth, and the rotation that makes the measured
+/// vertical follow it is level and heading at once (alignment in the inertial frame, Groves 2013 section 5.6.2). A
+/// vehicle that rocks, because of people or an engine, does not disturb it, as it does a mean of the rates. The sigmas
+/// follow from the IMU's errors, the duration, and the unrest that is left: level `bias / g`, heading
+/// `rate error / (omega cos latitude)`. Fails with the reason when an instrument that resolves no Earth rate (heading
+/// sigma above 30 degrees) is asked for heading, or when the force is not that of gravity.
 [[nodiscard]] Expected<InitialAlignment> gyrocompass(const sensors::ImuSeries& imu, const Interval& standing,
                                                      const geodesy::Geodetic& position,
                                                      const sensors::ImuErrors& errors,
