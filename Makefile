@@ -24,7 +24,7 @@ demo: build
 	rm -rf out/demo && mkdir -p out
 	$(VERSINE) simulate examples/scenarios/slab-1km.toml -o out/demo/recording
 	$(VERSINE) survey out/demo/recording/survey.toml -o out/demo/result
-	$(VERSINE) compare out/demo/result out/demo/recording/truth.h5
+	$(VERSINE) compare out/demo/result out/demo/recording/truth_trajectory.csv
 	@echo; echo "The result is in out/demo/result: trajectory.h5, trajectory.csv, run.json."
 
 # Accuracy on the real recordings (docs/accuracy.md); VERSINE_DATA names their folder.

@@ -44,6 +44,10 @@ std::string survey_job_for(const SimulateConfig& c, const simulation::SimulatedR
                                                                   trolley.reference_y, trolley.contact_z);
     text += fmt::format("\n[wheel]\nlever_arm_m = {}\n", list(C_bv * wheel));
   }
+  if (!c.has_vehicle) {
+    // Rollers on rails: nothing but the rails' own irregularity moves a trolley sideways.
+    text += "\n[constraint]\nsigma_mps = 0.0001\nangle_rad = 0.0001\n\n[standstill]\nsigma_mps = 0.0003\n";
+  }
   if (!r.landmarks.empty()) {
     text +=
         fmt::format("\n[landmarks]\nfile = \"landmarks.csv\"\nlever_arm_m = {}\n", list(C_bv * c.total_station.place));

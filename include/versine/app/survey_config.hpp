@@ -13,6 +13,9 @@ namespace versine::app {
 enum class SurveyMethod { aided_ins, landmark };
 
 struct SurveyConfig {
+  /// A trajectory at 10 Hz keeps hours of recording small; versines and coordinates lose nothing by it.
+  SurveyConfig() { estimator.output_rate = 10.0; }
+
   std::string job = "survey";
   std::string title;
   SurveyMethod method = SurveyMethod::aided_ins;
