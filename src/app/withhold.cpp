@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "versine/geodesy/ellipsoid.hpp"
 
@@ -33,7 +34,7 @@ WithheldErrors compare_withheld(const Series<sensors::GnssSample>& hidden, const
   double sum_h = 0.0, sum_v = 0.0;
   std::size_t covered = 0;
   WithheldErrors out;
-  Time previous{std::numeric_limits<std::int64_t>::min()};
+  std::optional<Time> previous;
   for (const sensors::GnssSample& s : hidden) {
     const std::size_t i = solution.lower_bound(s.time);
     if (i == 0 || i >= solution.size() || solution[i].segment != solution[i - 1].segment) continue;
@@ -50,7 +51,7 @@ WithheldErrors compare_withheld(const Series<sensors::GnssSample>& hidden, const
     for (int k = 0; k < 2; ++k) {
       if (std::abs(error(k)) <= 1.96 * std::sqrt(P(k, k) + s.sigma_ned(k) * s.sigma_ned(k))) ++covered;
     }
-    if (s.time - previous > Duration::from_seconds(2.0)) ++out.windows;
+    if (!previous || s.time - *previous > Duration::from_seconds(2.0)) ++out.windows;
     previous = s.time;
   }
   out.count = horizontal.size();
