@@ -201,7 +201,9 @@ Expected<Read<Series<GnssSample>>> read_rtklib(LineReader lines, const GnssFile&
       continue;
     }
     // RTKLIB prints tenths of a millimetre: a single 0.0000 is a small sigma rounded, three of them are none at all.
-    if (sample.sigma_ned.maxCoeff() > 0.0) sample.sigma_ned = sample.sigma_ned.cwiseMax(0.5e-4);
+    if (sample.sigma_ned.minCoeff() >= 0.0 && sample.sigma_ned.maxCoeff() > 0.0) {
+      sample.sigma_ned = sample.sigma_ned.cwiseMax(0.5e-4);
+    }
     if (!(sample.sigma_ned.minCoeff() > 0.0)) {
       return wrong(fmt::format("a standard deviation of {}", sample.sigma_ned.minCoeff()), "positive sdn, sde and sdu",
                    "delete the line, or solve again with RTKLIB's standard deviations");

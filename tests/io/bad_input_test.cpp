@@ -274,9 +274,15 @@ TEST(Rtklib, WeekAndDateUtcAndDms) {
       read(pos_header + std::string("2374 243258.499  139.2 35.1 50.0 1 9 0.01 0.02 0.03 0 0 0 0 99\n"));
   ASSERT_FALSE(swapped);
   EXPECT_EQ(swapped.error().line, 2u);
-  const auto zero = read(pos_header + std::string("2374 243258.499  35.1 139.2 50.0 1 9 0 0.02 0.03 0 0 0 0 99\n"));
-  ASSERT_FALSE(zero);
-  EXPECT_NE(zero.error().message().find("positive"), std::string::npos);
+  const auto with_sigmas = [&](const std::string& sigmas) {
+    return read(pos_header + std::string("2374 243258.499  35.1 139.2 50.0 1 9 ") + sigmas + " 0 0 0 0 99\n");
+  };
+  for (const char* bad : {"0 0 0", "-0.01 0.02 0.03"}) {
+    const auto zero = with_sigmas(bad);
+    ASSERT_FALSE(zero) << bad;
+    EXPECT_NE(zero.error().message().find("positive"), std::string::npos);
+  }
+  EXPECT_TRUE(with_sigmas("0.0000 0.0001 0.0002"));  // rounded to tenths of a millimetre
 }
 
 TEST(Gnss, SwappedCoordinatesBeyondTheirRangeAndBadSigma) {
