@@ -12,6 +12,7 @@
 #include "versine/app/version.hpp"
 #include "versine/io/result_folder.hpp"
 #include "versine/io/run_json.hpp"
+#include "versine/io/write_journey.hpp"
 #include "versine/io/write_recording.hpp"
 #include "versine/simulation/simulate.hpp"
 #include "versine/simulation/world.hpp"
@@ -41,7 +42,24 @@ Expected<void> write_run(const std::filesystem::path& folder, const SimulateConf
   if (auto done = io::write_truth(folder, recording.truth, csv_truth); !done) {
     return tl::unexpected(std::move(done.error()));
   }
-  return write_text(folder / "survey.toml", survey_job_for(config, recording));
+  if (!config.journey.present) return write_text(folder / "survey.toml", survey_job_for(config, recording));
+  if (auto done = io::write_onboard(folder / "journey.h5", recording); !done) return done;
+  return write_text(folder / "georef.toml", georef_job_for(config.journey));
+}
+
+/// Rails, motion and error-free IMU of the scenario, on its alignment or its network.
+Expected<std::shared_ptr<const simulation::World>> world_of(const SimulateConfig& c, const JourneyNetwork* map) {
+  if (map == nullptr) return simulation::prepare(c.scenario);
+  simulation::JourneyScenario journey{.name = c.title,
+                                      .stops = c.journey.stops,
+                                      .vehicle = c.vehicle,
+                                      .height = c.journey.height,
+                                      .smoothing = c.journey.smoothing,
+                                      .equipment = c.scenario.equipment,
+                                      .start = c.scenario.start,
+                                      .time_scale = c.scenario.time_scale,
+                                      .truth_rate = c.scenario.truth_rate};
+  return simulation::prepare_journey(map->network, journey);
 }
 
 json summary_of(const simulation::World& world, const simulation::SimulatedRecording& r) {
@@ -87,7 +105,13 @@ Expected<SimulateRun> run_simulate(const std::filesystem::path& job, std::span<c
   auto folder = io::ResultFolder::create(output.empty() ? fs::path(job).replace_extension(".recording") : output);
   if (!folder) return tl::unexpected(std::move(folder.error()));
   progress.report("track and motion", 0.0);
-  auto world = simulation::prepare(config->scenario);
+  std::optional<JourneyNetwork> map;
+  if (config->journey.present) {
+    auto loaded = load_network(config->journey);
+    if (!loaded) return tl::unexpected(std::move(loaded.error()));
+    map = std::move(*loaded);
+  }
+  auto world = world_of(*config, map ? &*map : nullptr);
   if (!world) {
     if (world.error().file.empty()) world.error().file = job.string();
     return tl::unexpected(std::move(world.error()));
@@ -101,6 +125,8 @@ Expected<SimulateRun> run_simulate(const std::filesystem::path& job, std::span<c
         if (!done) return;
         const fs::path where = several ? folder->path(fmt::format("run_{:04d}", run)) : folder->folder();
         done = write_run(where, *config, recording, config->write_csv_truth && run == 0);
+        // Beside each recording, since its job names it so.
+        if (done && map && map->source) done = io::write_network_geojson(where / "network.geojson", *map->source);
         if (run == 0) summary = summary_of(**world, recording);
       },
       progress);
@@ -115,10 +141,10 @@ Expected<SimulateRun> run_simulate(const std::filesystem::path& job, std::span<c
   summary["folder"] = folder->target().string();
   return SimulateRun{
       folder->target(), summary.dump(2),
-      fmt::format("{:.1f} s of recording over {:.1f} m with {} standstills, {} run{}\nnext: versine survey {}\n",
+      fmt::format("{:.1f} s of recording over {:.1f} m with {} standstills, {} run{}\nnext: versine {} {}\n",
                   summary["duration_s"].get<double>(), summary["distance_m"].get<double>(), (*world)->stops.size(),
-                  config->runs, several ? "s" : "",
-                  (folder->target() / (several ? "run_0000/survey.toml" : "survey.toml")).string())};
+                  config->runs, several ? "s" : "", map ? "georef" : "survey",
+                  (folder->target() / (several ? "run_0000" : "") / (map ? "georef.toml" : "survey.toml")).string())};
 }
 
 }  // namespace versine::app

@@ -376,6 +376,7 @@ void describe(ConfigVisitor& v, SimulateConfig& c) {
   v.value("runs", c.runs, {.doc = "Recordings with the same truth and other errors.", .min = 1, .max = 1000000});
   v.value("start_gps_s", c.start_gps_s, {.doc = "GPS time of the start.", .unit = "s", .min = 0, .max = 4e9});
   v.table("track", "The line and how it lies.", [&](ConfigVisitor& t) { describe_track(t, c); });
+  describe(v, c.journey);
   describe_body(v, c);
   v.table(
       "imu", "Inertial measurement unit.", [&](ConfigVisitor& t) { describe_imu(t, c); }, &c.has_imu);

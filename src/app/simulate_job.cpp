@@ -17,6 +17,12 @@ void describe_defaults(ConfigVisitor& v) {
 Expected<std::vector<std::string>> check(const std::filesystem::path& job, std::span<const std::string> overrides) {
   const auto config = read_simulate_config(job, overrides);
   if (!config) return tl::unexpected(config.error());
+  if (config->journey.present) {
+    const auto map = load_network(config->journey);
+    if (!map) return tl::unexpected(map.error());
+    return std::vector{
+        fmt::format("network of {} tracks, {} stops", map->network.tracks.size(), config->journey.stops.size())};
+  }
   const auto& track = config->scenario.track;
   const auto motion =
       simulation::SpeedProfile::create(config->scenario.motion, 0.0, track.alignment.length(), track.seed);

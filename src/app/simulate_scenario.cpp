@@ -144,9 +144,16 @@ Expected<SimulateConfig> read_simulate_config(const std::filesystem::path& path,
                     .expected = "\"simulate\"",
                     .advice = "run the file with its own command"});
   }
-  auto alignment = alignment_of(c);
-  if (!alignment) return in_file(std::move(alignment.error()));
-  c.scenario.track.alignment = std::move(*alignment);
+  if (!c.journey.present) {
+    auto alignment = alignment_of(c);
+    if (!alignment) return in_file(std::move(alignment.error()));
+    c.scenario.track.alignment = std::move(*alignment);
+  } else if (c.journey.made == !c.journey.file.empty()) {
+    return in_file({.field = "network",
+                    .found = c.journey.made ? "both a file and [network.made]" : "neither a file nor [network.made]",
+                    .expected = "one of them",
+                    .advice = "name the map with 'file', or add [network.made]"});
+  }
   if (!c.table_file.empty()) {
     auto table = io::read_deviations(c.table_file.path);
     if (!table) return tl::unexpected(std::move(table.error()));
@@ -162,6 +169,7 @@ Expected<SimulateConfig> read_simulate_config(const std::filesystem::path& path,
   if (c.has_gnss) on.gnss = c.gnss;
   if (c.has_total_station) on.total_station = c.total_station;
   if (c.has_axle_box) on.axle_box = c.axle_box;
+  if (c.journey.present) return c;
   if (auto good = simulation::check(c.scenario); !good) return in_file(std::move(good.error()));
   return c;
 }

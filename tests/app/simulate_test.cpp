@@ -3,10 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
+#include "support/shared_data.hpp"
+#include "versine/io/network_file.hpp"
 #include "versine/io/read_recording.hpp"
+#include "versine/network/build.hpp"
+#include "versine/network/oriented_graph.hpp"
+#include "versine/simulation/journey.hpp"
 #include "versine/simulation/simulate.hpp"
 
 namespace versine::app {
@@ -102,6 +108,58 @@ TEST(Simulate, WritesWhatTheReadersRead) {
   EXPECT_NEAR(trajectory->series[100].position.height, made->truth.trajectory[100].position.height, 1e-9);
   EXPECT_TRUE(fs::exists(folder / "survey.toml"));
   fs::remove_all(folder);
+}
+
+/// Drives straight on for at least 3 km from the middle of the first track where that goes; checks truth against the
+/// map.
+void drive_on(const fs::path& file) {
+  const auto source = io::read_network({.path = file});
+  ASSERT_TRUE(source) << source.error().message();
+  const auto network = network::build(*source);
+  ASSERT_TRUE(network) << network.error().message();
+  const network::OrientedGraph graph(*network);
+  for (std::uint32_t state = 0; state < graph.states(); ++state) {
+    network::Path path{network::OrientedTrack::from_state(state)};
+    double length = 0.0;
+    for (auto arcs = graph.successors(path.back()); !arcs.empty() && length < 3000.0;
+         arcs = graph.successors(path.back())) {
+      path.push_back(arcs.front().to);
+      length += graph.length(path.back());
+    }
+    if (length < 3000.0) continue;
+    const auto middle = [&](network::OrientedTrack t) {
+      return simulation::JourneyStop{.track = network->tracks[t.track].id,
+                                     .distance = 0.5 * network->tracks[t.track].line.length(),
+                                     .speed = 20.0};
+    };
+    simulation::JourneyScenario scenario;
+    scenario.stops = {middle(path.front()), middle(path.back())};
+    const auto world = simulation::prepare_journey(*network, scenario);
+    ASSERT_TRUE(world) << world.error().message();
+    const auto recording = simulation::observe(**world, 1);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < recording.truth.progress.size(); ++i) {
+      const auto& p = recording.truth.progress[i];
+      const auto track =
+          std::find_if(network->tracks.begin(), network->tracks.end(), [&](const auto& t) { return t.id == p.track; });
+      ASSERT_NE(track, network->tracks.end());
+      const auto at = network->to_map(recording.truth.trajectory[i].position);
+      worst = std::max(worst, (at - track->line.position(p.track_distance)).norm());
+    }
+    EXPECT_LT(worst, 1.5) << "m from the map";
+    return;
+  }
+  FAIL() << "no way of 3 km";
+}
+
+TEST(SimulatedJourney, DrivesOnTheBrusselsNetwork) {
+  VERSINE_NEEDS(file, "brussels-airport/network_airport.geojson");
+  drive_on(file);
+}
+
+TEST(SimulatedJourney, DrivesOnTheDutchNetwork) {
+  VERSINE_NEEDS(file, "dutch-network/subset_utrecht.geojson.zst");
+  drive_on(file);
 }
 
 }  // namespace

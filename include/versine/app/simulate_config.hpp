@@ -7,6 +7,7 @@
 
 #include "versine/app/config.hpp"
 #include "versine/app/recording_config.hpp"
+#include "versine/app/simulate_journey.hpp"
 #include "versine/simulation/scenario.hpp"
 
 /// The scenario file of `versine simulate`.
@@ -49,6 +50,7 @@ struct SimulateConfig {
   simulation::AxleBoxModel axle_box;
   bool write_rates = false;
   bool write_csv_truth = true;
+  JourneyConfig journey;          ///< instead of the scenario's track and motion
   simulation::Scenario scenario;  ///< takes all the rest directly
 };
 
