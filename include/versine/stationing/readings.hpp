@@ -35,11 +35,11 @@ struct Sighting {
   double zenith = 0.0;     ///< vertical circle, rad from the zenith; above pi in face II
   double distance = std::numeric_limits<double>::quiet_NaN();  ///< slope distance, m; NaN: angles only
   Face face = Face::one;
-  int set = 0;                  ///< number of the set (round); 0: not told, one set
-  double target_height = 0.0;   ///< of the prism above the point, along the plumb line, m
-  double prism_constant = 0.0;  ///< still to be added to `distance`, m; 0 when the instrument has added it
-  std::optional<Time> time;
-  std::size_t line = 0;  ///< of the file it came from; 0: none
+  int set = 0;                   ///< number of the set (round); 0: not told, one set
+  double target_height = 0.0;    ///< of the prism above the point, along the plumb line, m
+  double prism_constant = 0.0;   ///< still to be added to `distance`, m; 0 when the instrument has added it
+  std::optional<Time> from, to;  ///< when the target stood still, for a prism on the trolley
+  std::size_t line = 0;          ///< of the file it came from; 0: none
 };
 
 /// Air at the instrument, for the distance correction.
