@@ -27,6 +27,8 @@ void add_network(CLI::App& app, int& exit);
 void add_simulate(CLI::App& app, int& exit);
 void add_survey(CLI::App& app, int& exit);
 void add_compare(CLI::App& app, int& exit);
+void add_gnss(CLI::App& app, int& exit);
+void add_stationing(CLI::App& app, int& exit);
 void add_alignment(CLI::App& app, int& exit);
 void add_plan(CLI::App& app, int& exit);
 

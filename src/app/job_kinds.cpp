@@ -4,12 +4,13 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
-#include "versine/app/plan.hpp"
-#include "versine/app/simulate_job.hpp"
-#include "versine/app/survey_job.hpp"
-
 #include <algorithm>
 #include <array>
+
+#include "versine/app/plan.hpp"
+#include "versine/app/positioning_jobs.hpp"
+#include "versine/app/simulate_job.hpp"
+#include "versine/app/survey_job.hpp"
 
 namespace versine::app {
 
@@ -22,7 +23,7 @@ std::string names() {
 }  // namespace
 
 std::span<const JobKind> job_kinds() {
-  static const std::array kinds{survey_job, simulate_job, plan_job};
+  static const std::array kinds{survey_job, gnss_job, stationing_job, simulate_job, plan_job};
   return kinds;
 }
 

@@ -52,6 +52,11 @@ std::string survey_job_for(const SimulateConfig& c, const simulation::SimulatedR
     text +=
         fmt::format("\n[landmarks]\nfile = \"landmarks.csv\"\nlever_arm_m = {}\n", list(C_bv * c.total_station.place));
   }
+  if (!r.stationings.empty() && r.landmarks.empty()) {
+    text +=
+        fmt::format("\n[total_station]\nreadings = [\"readings.csv\"]\ncontrol = [\"control.csv\"]\nlever_arm_m = {}\n",
+                    list(C_bv * c.total_station.place));
+  }
   return text;
 }
 

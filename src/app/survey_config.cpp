@@ -73,6 +73,7 @@ void describe_imu(ConfigVisitor& v, SurveyConfig& c) {
 
 void describe_gnss(ConfigVisitor& v, SurveyConfig& c) {
   describe(v, c.gnss);
+  describe(v, c.gnss_raw);
   auto& e = c.estimator;
   describe_lever(v, "lever_arm_m", "lever_arm_sigma_m", e.gnss_lever,
                  "From the IMU to the antenna: forward, right, "
@@ -221,6 +222,12 @@ void describe(ConfigVisitor& v, SurveyConfig& c) {
   v.table("landmarks", "Positions known from outside while the vehicle stands: total station, prism, marked points.",
           [&](ConfigVisitor& t) {
             describe(t, c.landmarks);
+            describe_lever(t, "lever_arm_m", "", c.estimator.landmark_lever,
+                           "From the IMU to the instrument or prism.");
+          });
+  v.table("total_station", "Raw readings of a total station, instead of positions: docs/total-station.md.",
+          [&](ConfigVisitor& t) {
+            describe(t, c.total_station);
             describe_lever(t, "lever_arm_m", "", c.estimator.landmark_lever,
                            "From the IMU to the instrument or prism.");
           });

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -71,6 +72,54 @@ void keep_fixed(Series<sensors::GnssSample>& gnss, RunRecord& record) {
   std::erase_if(gnss.samples, is_other);
 }
 
+Expected<void> note_files(const char* role, const std::vector<InputPath>& files, SurveyInput& input) {
+  for (const InputPath& f : files) {
+    auto file = io::describe_input(role, f.written, f.path);
+    if (!file) return tl::unexpected(file.error());
+    input.files.push_back(std::move(*file));
+  }
+  return {};
+}
+
+/// Observations of rover and base become the series that `load_gnss` would read.
+Expected<void> solve_gnss(const SurveyConfig& config, SurveyInput& input, Progress& progress) {
+  const GnssProcessing& g = config.gnss_raw;
+  for (const auto& [role, files] :
+       {std::pair{"gnss rover", &g.rover}, {"gnss base", &g.base}, {"gnss navigation", &g.navigation}}) {
+    if (auto noted = note_files(role, *files, input); !noted) return noted;
+  }
+  SilentLog log;
+  auto solved = process_gnss(g, progress, log);
+  if (!solved) return tl::unexpected(solved.error());
+  input.record.append(std::move(solved->record));
+  input.gnss = std::move(solved->series);
+  if (config.fixed_only) keep_fixed(input.gnss, input.record);
+  auto record = sensors::check_gnss_plausibility(&input.imu, input.gnss, g.rover.front().written);
+  if (!record) return tl::unexpected(record.error());
+  input.record.append(std::move(*record));
+  return {};
+}
+
+/// Raw readings become landmarks; a station during which the trolley moved is left out.
+Expected<void> solve_total_station(const SurveyConfig& config, SurveyInput& input, Progress& progress) {
+  const StationingProcessing& t = config.total_station;
+  for (const auto& [role, files] : {std::pair{"total station", &t.readings}, {"control points", &t.control}}) {
+    if (auto noted = note_files(role, *files, input); !noted) return noted;
+  }
+  SilentLog log;
+  auto solved = process_stationing(t, progress, log);
+  if (!solved) return tl::unexpected(solved.error());
+  input.record.append(std::move(solved->record));
+  inertial::StandstillInput seen{.imu = &input.imu.series};
+  if (!input.odometers.empty() && !input.odometers.front().empty()) seen.odometer = &input.odometers.front();
+  input.record.append({.rejections = require_standstill(solved->landmarks, inertial::find_standstills(seen))});
+  input.landmarks.scale = t.time_scale;
+  input.landmarks.samples.insert(input.landmarks.samples.end(), solved->landmarks.begin(), solved->landmarks.end());
+  std::sort(input.landmarks.samples.begin(), input.landmarks.samples.end(),
+            [](const auto& a, const auto& b) { return a.time < b.time; });
+  return {};
+}
+
 Expected<void> load_gnss(const SurveyConfig& config, SurveyInput& input) {
   if (auto done = load(config.gnss, "gnss", io::read_gnss, with_options<sensors::GnssSample>(sensors::check_gnss),
                        input, input.gnss);
@@ -114,6 +163,7 @@ Expected<SurveyInput> read_survey_input(const SurveyConfig& config, const std::f
   std::vector<std::function<Expected<void>()>> stages;
   stages.emplace_back([&] { return load_imu(config, input); });
   if (config.gnss.given()) stages.emplace_back([&] { return load_gnss(config, input); });
+  if (!config.gnss_raw.rover.empty()) stages.emplace_back([&] { return solve_gnss(config, input, progress); });
   input.odometers.resize(config.odometers.size());
   for (std::size_t i = 0; i < config.odometers.size(); ++i) {
     stages.emplace_back([&, i] {
@@ -138,6 +188,9 @@ Expected<SurveyInput> read_survey_input(const SurveyConfig& config, const std::f
       return load(config.landmarks, "landmarks", io::read_landmarks,
                   with_options<sensors::LandmarkSample>(sensors::check_landmarks), input, input.landmarks);
     });
+  }
+  if (!config.total_station.readings.empty()) {
+    stages.emplace_back([&] { return solve_total_station(config, input, progress); });
   }
   for (std::size_t i = 0; i < stages.size(); ++i) {
     progress.report("reading", static_cast<double>(i) / static_cast<double>(stages.size()));

@@ -146,7 +146,7 @@ Expected<void> write_control_points(const std::filesystem::path& path, std::span
   std::ofstream out(path);
   out << "name,latitude_deg,longitude_deg,height_m,sigma_north_mm,sigma_east_mm,sigma_up_mm\n";
   for (const ControlEntry& p : points) {
-    out << fmt::format("{},{:.11f},{:.11f},{:.5f},{:.3f},{:.3f},{:.3f}\n", p.name, p.position.latitude / units::deg,
+    out << fmt::format("{},{:.12f},{:.12f},{:.6f},{:.3f},{:.3f},{:.3f}\n", p.name, p.position.latitude / units::deg,
                        p.position.longitude / units::deg, p.position.height, p.sigma_ned.x() * 1e3,
                        p.sigma_ned.y() * 1e3, p.sigma_ned.z() * 1e3);
   }

@@ -8,7 +8,10 @@
 #include "versine/core/calendar.hpp"
 #include "versine/core/units.hpp"
 #include "versine/geodesy/local_frame.hpp"
+#include "versine/io/control_points.hpp"
 #include "versine/io/table_reader.hpp"
+#include "versine/io/total_station_readings.hpp"
+#include "versine/io/write_positions.hpp"
 
 namespace versine::io {
 
@@ -29,83 +32,13 @@ Expected<void> write_imu(const std::filesystem::path& path, const sensors::ImuSe
   return out.close();
 }
 
-int rtklib_quality(sensors::FixType fix) {
-  switch (fix) {
-    case sensors::FixType::fixed:
-      return 1;
-    case sensors::FixType::float_ambiguity:
-      return 2;
-    case sensors::FixType::differential:
-      return 4;
-    default:
-      return 5;
-  }
-}
-
-Expected<void> write_gnss(const std::filesystem::path& path, const Series<sensors::GnssSample>& gnss) {
-  const bool velocity = gnss.front().v_ned.has_value();
-  TextOutput out(path);
-  out.text(std::string("time_s,latitude_deg,longitude_deg,height_m,sigma_north_m,sigma_east_m,sigma_down_m,"
-                       "fix_rtklib,satellites") +
-           (velocity ? ",velocity_north_mps,velocity_east_mps,velocity_down_mps,"
-                       "sigma_velocity_north_mps,sigma_velocity_east_mps,sigma_velocity_down_mps"
-                     : ""));
-  out.end_line();
-  for (const auto& s : gnss) {
-    std::string more;
-    if (velocity) {
-      const Eigen::Vector3d v = s.v_ned.value_or(Eigen::Vector3d::Zero());
-      more = fmt::format(",{:.5f},{:.5f},{:.5f},{:.4f},{:.4f},{:.4f}", v.x(), v.y(), v.z(), s.sigma_v_ned.x(),
-                         s.sigma_v_ned.y(), s.sigma_v_ned.z());
-    }
-    out.print("{},{:.11f},{:.11f},{:.5f},{:.5f},{:.5f},{:.5f},{},{}{}\n", seconds_text(s.time),
-              s.position.latitude / units::deg, s.position.longitude / units::deg, s.position.height, s.sigma_ned.x(),
-              s.sigma_ned.y(), s.sigma_ned.z(), rtklib_quality(s.fix), s.satellites, more);
-  }
-  return out.close();
-}
-
-Expected<void> write_landmarks(const std::filesystem::path& path, const std::vector<sensors::LandmarkSample>& list) {
-  TextOutput out(path);
-  out.text(
-      "name,time_from_s,time_to_s,latitude_deg,longitude_deg,height_m,sigma_north_m,sigma_east_m,"
-      "sigma_down_m");
-  out.end_line();
-  for (const auto& s : list) {
-    out.print("{},{},{},{:.12f},{:.12f},{:.6f},{:.6f},{:.6f},{:.6f}\n", s.name, seconds_text(s.from),
-              seconds_text(s.to), s.position.latitude / units::deg, s.position.longitude / units::deg,
-              s.position.height, std::sqrt(s.covariance(0, 0)), std::sqrt(s.covariance(1, 1)),
-              std::sqrt(s.covariance(2, 2)));
-  }
-  return out.close();
-}
-
 Expected<void> write_control(const std::filesystem::path& path, const SimulatedRecording& r) {
   const geodesy::LocalFrame frame(r.origin);
-  TextOutput out(path);
-  out.text("name,latitude_deg,longitude_deg,height_m,sigma_north_mm,sigma_east_mm,sigma_up_mm");
-  out.end_line();
+  std::vector<ControlEntry> entries;
   for (const auto& p : r.control_points) {
-    const geodesy::Geodetic g = frame.to_geodetic(p.position);
-    out.print("{},{:.12f},{:.12f},{:.6f},{:.3f},{:.3f},{:.3f}\n", p.name, g.latitude / units::deg,
-              g.longitude / units::deg, g.height, std::sqrt(p.covariance(0, 0)) / units::mm,
-              std::sqrt(p.covariance(1, 1)) / units::mm, std::sqrt(p.covariance(2, 2)) / units::mm);
+    entries.push_back({p.name, frame.to_geodetic(p.position), p.covariance.diagonal().cwiseSqrt()});
   }
-  return out.close();
-}
-
-Expected<void> write_readings(const std::filesystem::path& path, const std::vector<stationing::Stationing>& stations) {
-  TextOutput out(path);
-  out.text("station,point,direction_gon,zenith_gon,distance_m,from_s,to_s");
-  out.end_line();
-  for (const auto& station : stations) {
-    for (const auto& s : station.sightings) {
-      out.print("{},{},{:.7f},{:.7f},{:.6f},{},{}\n", station.name, s.point, s.direction / units::gon,
-                s.zenith / units::gon, s.distance, seconds_text(station.from.value_or(Time{})),
-                seconds_text(station.to.value_or(Time{})));
-    }
-  }
-  return out.close();
+  return write_control_points(path, entries);
 }
 
 template <class Samples, class Row>
@@ -147,10 +80,11 @@ Expected<std::vector<std::string>> write_recording(const std::filesystem::path& 
       out.print("{},{:.4f}\n", seconds_text(s.time), s.range);
     });
   });
-  put(!r.gnss.empty(), "gnss.csv", [&](const auto& path) { return write_gnss(path, r.gnss); });
-  put(!r.landmarks.empty(), "landmarks.csv", [&](const auto& path) { return write_landmarks(path, r.landmarks); });
+  put(!r.gnss.empty(), "gnss.csv", [&](const auto& path) { return write_gnss_csv(path, r.gnss); });
+  put(!r.landmarks.empty(), "landmarks.csv", [&](const auto& path) { return write_landmarks_csv(path, r.landmarks); });
   put(!r.control_points.empty(), "control.csv", [&](const auto& path) { return write_control(path, r); });
-  put(!r.stationings.empty(), "readings.csv", [&](const auto& path) { return write_readings(path, r.stationings); });
+  put(!r.stationings.empty(), "readings.csv",
+      [&](const auto& path) { return write_total_station(path, r.stationings); });
   put(!r.axle_box.vertical.empty(), "axle_box.h5", [&](const auto& path) {
     auto file = Hdf5File::create(path);
     if (!file) return Expected<void>(tl::unexpected(std::move(file.error())));

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "versine/app/gnss.hpp"
 #include "versine/app/recording_config.hpp"
+#include "versine/app/stationing.hpp"
 #include "versine/fusion/aided_ins.hpp"
 
 /// What a survey job says: `[imu]`, `[gnss]`, ... as in docs/job-survey.md, which is made from `describe`.
@@ -24,11 +26,13 @@ struct SurveyConfig {
   ImuErrorsConfig imu_errors;
   std::optional<double> max_tilt;  ///< rad; gravity further from the IMU's down axis is an error in axes
   GnssFileConfig gnss;
+  GnssProcessing gnss_raw;  ///< instead of `gnss`: observations of rover and base
   bool fixed_only = false;
   std::vector<OdometerFileConfig> odometers;
   SpeedFileConfig speed;
   HeadingFileConfig heading;
   LandmarkFileConfig landmarks;
+  StationingProcessing total_station;  ///< instead of `landmarks`: raw readings
 
   /// Everything the estimator wants to know; the keys of the job write straight into it.
   fusion::AidedInsOptions estimator;
