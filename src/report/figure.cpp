@@ -90,7 +90,7 @@ std::string number(double x) {
   return fmt::format("{:.6g}", std::abs(x) < 1e-12 ? 0.0 : x);
 }
 
-void draw_axes(std::string& svg, const Figure& f, const Scale& x, const Scale& y) {
+void draw_axes(std::string& svg, const Figure& f, const Scale& x, const Scale& y, int axis_bottom) {
   svg += "<g stroke=\"#ddd\" stroke-width=\"1\">";
   for (const double t : axis_ticks(x, 7)) {
     svg += fmt::format("<path d=\"M{:.1f} {:.1f}V{:.1f}\"/>", x(t), y.from, y.to);
@@ -113,7 +113,7 @@ void draw_axes(std::string& svg, const Figure& f, const Scale& x, const Scale& y
   svg += fmt::format("<text x=\"{}\" y=\"20\" font-size=\"13\" font-weight=\"bold\" text-anchor=\"middle\">{}</text>",
                      f.width / 2, escaped(f.title));
   svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" font-size=\"12\" text-anchor=\"middle\">{}</text>",
-                     0.5 * (x.from + x.to), f.height - 12, escaped(f.x.label));
+                     0.5 * (x.from + x.to), axis_bottom - 12, escaped(f.x.label));
   svg += fmt::format(
       "<text transform=\"translate(15 {:.1f}) rotate(-90)\" font-size=\"12\" text-anchor=\"middle\">{}</text>",
       0.5 * (y.from + y.to), escaped(f.y.label));
@@ -192,32 +192,56 @@ void draw_curve(std::string& svg, const Curve& c, const char* colour, const Scal
                      c.style == CurveStyle::dashed ? " stroke-dasharray=\"6 4\"" : "");
 }
 
-void draw_legend(std::string& svg, const Figure& f, const Scale& x, const Scale& y) {
-  std::vector<std::pair<std::string, std::string>> rows;
+struct LegendEntry {
+  std::string name, mark;  ///< mark: SVG drawn at the origin, 22 px wide
+};
+
+std::vector<LegendEntry> legend(const Figure& f) {
+  std::vector<LegendEntry> entries;
   for (std::size_t i = 0; i < f.curves.size(); ++i) {
-    if (f.curves[i].name.empty()) continue;
-    const char* colour = colour_of(f.curves[i], i);
-    rows.emplace_back(f.curves[i].name,
-                      fmt::format("stroke=\"{}\" stroke-width=\"2\"{}", colour,
-                                  f.curves[i].style == CurveStyle::dashed ? " stroke-dasharray=\"6 4\"" : ""));
+    const Curve& c = f.curves[i];
+    if (c.name.empty()) continue;
+    const char* colour = colour_of(c, i);
+    switch (c.style) {
+      case CurveStyle::points:
+        entries.push_back({c.name, fmt::format("<circle cx=\"11\" r=\"2.5\" fill=\"{}\"/>", colour)});
+        break;
+      case CurveStyle::bars:
+        entries.push_back(
+            {c.name,
+             fmt::format("<rect y=\"-5\" width=\"22\" height=\"10\" fill=\"{}\" fill-opacity=\"0.55\"/>", colour)});
+        break;
+      case CurveStyle::line:
+      case CurveStyle::dashed:
+        entries.push_back({c.name, fmt::format("<path d=\"M0 0h22\" stroke=\"{}\" stroke-width=\"2\"{}/>", colour,
+                                               c.style == CurveStyle::dashed ? " stroke-dasharray=\"6 4\"" : "")});
+    }
   }
   if (f.field && f.field->emphasis && !f.field->label.empty()) {
-    rows.emplace_back(f.field->label, "stroke=\"#000\" stroke-width=\"2.2\"");
+    entries.push_back({f.field->label, "<path d=\"M0 0h22\" stroke=\"#000\" stroke-width=\"2.2\"/>"});
   }
-  if (rows.empty()) return;
-  std::size_t longest = 0;
-  for (const auto& [name, style] : rows) longest = std::max(longest, name.size());
-  const double width = 40.0 + 6.3 * static_cast<double>(longest), x0 = x.to - width - 6, y0 = y.to + 6;
-  svg += fmt::format(
-      "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{}\" fill=\"#fff\" fill-opacity=\"0.85\" "
-      "stroke=\"#bbb\"/>",
-      x0, y0, width, 16 * rows.size() + 6);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double at = y0 + 14 + 16 * static_cast<double>(i);
-    svg += fmt::format("<path d=\"M{:.1f} {:.1f}h22\" {}/><text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"11\">{}</text>",
-                       x0 + 6, at - 4, rows[i].second, x0 + 33, at, escaped(rows[i].first));
-  }
+  return entries;
 }
+
+/// Where each entry of the legend lies below the plot, in rows; the last pair is the number of rows.
+std::vector<std::pair<double, int>> legend_places(const std::vector<LegendEntry>& entries, double width) {
+  std::vector<std::pair<double, int>> places;
+  double x = 0.0;
+  int row = 0;
+  for (const auto& e : entries) {
+    const double needed = 42.0 + 6.2 * static_cast<double>(e.name.size());
+    if (x > 0.0 && x + needed > width) {
+      x = 0.0;
+      ++row;
+    }
+    places.emplace_back(x, row);
+    x += needed;
+  }
+  places.emplace_back(0.0, entries.empty() ? 0 : row + 1);
+  return places;
+}
+
+constexpr int legend_row = 17;  // px
 
 std::string body(const Figure& f) {
   Extent ex, ey;
@@ -237,12 +261,19 @@ std::string body(const Figure& f) {
     ax.high = ax.high.value_or(ex.high);
   }
   const Scale x = make_scale(ax, ex, left, f.width - right, false);
-  const Scale y = make_scale(f.y, ey, f.height - bottom, top, from_zero);
+  const auto entries = legend(f);
+  const auto places = legend_places(entries, x.to - x.from);
+  const int axis_bottom = f.height - legend_row * places.back().second;
+  const Scale y = make_scale(f.y, ey, axis_bottom - bottom, top, from_zero);
   std::string svg = "<g font-family=\"sans-serif\">";
   if (f.field) draw_field(svg, *f.field, x, y);
-  draw_axes(svg, f, x, y);
+  draw_axes(svg, f, x, y, axis_bottom);
   for (std::size_t i = 0; i < f.curves.size(); ++i) draw_curve(svg, f.curves[i], colour_of(f.curves[i], i), x, y);
-  draw_legend(svg, f, x, y);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    svg += fmt::format("<g transform=\"translate({:.1f} {})\">{}<text x=\"28\" y=\"4\" font-size=\"11\">{}</text></g>",
+                       x.from + places[i].first, axis_bottom + legend_row * places[i].second + 2, entries[i].mark,
+                       escaped(entries[i].name));
+  }
   return svg + "</g>";
 }
 
