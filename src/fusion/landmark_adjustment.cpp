@@ -92,21 +92,15 @@ Channels build_channels(std::span<const Node> nodes, std::span<const Stretch> st
   Channels c;
   c.vertical.resize(nodes.size());
   c.level.resize(nodes.size());
-  c.roll.resize(nodes.size());
   for (const Stretch& s : stretches) {
     for (std::size_t k = s.first + 1; k <= s.last; ++k) {
       c.vertical[k] = vertical_step(nodes[k].motion, noise, s.noise);
       c.level[k] = level_step(nodes[k].motion, noise, s.noise);
-      c.roll[k] = roll_step(nodes[k].motion, noise);
     }
   }
   const double r = square(prior.position), w = square(prior.bias);
   c.vertical_start.covariance.diagonal() << r, square(prior.pitch), w;
   c.level_start.covariance.diagonal() << r, r, square(prior.scale), square(prior.heading), w;
-  // The start was levelled by the accelerometers: its roll error is minus theirs (and a little of its own).
-  const double b = square(prior.roll);
-  c.roll_start.covariance.diagonal() << b * (1.0 + 1e-4), w, b;
-  c.roll_start.covariance(roll::angle, roll::levelling) = c.roll_start.covariance(roll::levelling, roll::angle) = -b;
   return c;
 }
 
@@ -160,25 +154,36 @@ AtTies smooth_at_ties(const Channels& channels, std::span<const Tie> ties, std::
   return at;
 }
 
+std::vector<filter::SmoothedEpoch<roll::size>> smooth_roll(std::span<const Node> nodes, const Prior& prior,
+                                                           const DrivingNoise& noise, std::span<const RollTie> ties,
+                                                           LandmarkSmoother smoother) {
+  std::vector<RollStep> steps(nodes.size());
+  for (std::size_t k = 1; k < nodes.size(); ++k) steps[k] = roll_step(nodes[k].duration, noise);
+  for (const RollTie& tie : ties) join(steps[tie.node].observation, observe_roll(tie.difference, tie.variance));
+  // The start was levelled by the accelerometers: its roll error is minus theirs (and a little of its own).
+  const double b = square(prior.roll);
+  RollEstimate start;
+  start.covariance.diagonal() << b * (1.0 + 1e-4), square(prior.bias), b;
+  start.covariance(roll::angle, roll::levelling) = start.covariance(roll::levelling, roll::angle) = -b;
+  std::vector<filter::ForwardEpoch<roll::size, 1>> forward;
+  return smoothed(start, steps, forward, smoother);
+}
+
 Smoothed smooth(Channels channels, std::span<const Tie> ties, std::span<const Fit> fits,
-                std::span<const RollTie> roll_ties, LandmarkSmoother smoother) {
+                std::vector<filter::SmoothedEpoch<roll::size>> roll, LandmarkSmoother smoother) {
   for (std::size_t i = 0; i < ties.size(); ++i) {
     if (!fits[i].used) continue;
     join(channels.vertical[ties[i].node].observation, observe_down(ties[i].misclosure.z(), ties[i].covariance(2, 2)));
     join(channels.level[ties[i].node].observation,
          observe_level(ties[i].misclosure.head<2>(), ties[i].covariance.topLeftCorner<2, 2>()));
   }
-  for (const RollTie& tie : roll_ties) {
-    join(channels.roll[tie.node].observation, observe_roll(tie.difference, tie.variance));
-  }
 
   std::vector<filter::ForwardEpoch<vertical::size, 1>> vf;
   std::vector<filter::ForwardEpoch<level::size, 2>> lf;
-  std::vector<filter::ForwardEpoch<roll::size, 1>> rf;
   Smoothed s;
   s.vertical = smoothed(channels.vertical_start, channels.vertical, vf, smoother);
   s.level = smoothed(channels.level_start, channels.level, lf, smoother);
-  s.roll = smoothed(channels.roll_start, channels.roll, rf, smoother);
+  s.roll = std::move(roll);
   for (std::size_t i = 0; i < ties.size(); ++i) {
     const auto& pv = vf[ties[i].node].predicted;
     const auto& pl = lf[ties[i].node].predicted;

@@ -144,10 +144,10 @@ struct Placement {
 };
 
 /// What a landmark's instrument is away from the odometer's point, n-frame, with the attitude as known so far.
-Eigen::Vector3d lever_n(const Node& node, double heading, double pitch, const LandmarkOptions& o) {
-  const double yaw = geodesy::to_euler(node.q_nv).yaw + heading;
+Eigen::Vector3d lever_n(const Node& node, double heading, double roll, double pitch, const LandmarkOptions& o) {
+  const double yaw = geodesy::to_euler(node.q_nv).yaw + heading, c = std::cos(yaw), s = std::sin(yaw);
   const Eigen::Quaterniond correction =
-      geodesy::from_rotation_vector({-pitch * std::sin(yaw), pitch * std::cos(yaw), 0.0}) *
+      geodesy::from_rotation_vector({c * roll - s * pitch, s * roll + c * pitch, 0.0}) *
       Eigen::Quaterniond(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()));
   return correction * (node.q_nv * (geodesy::to_matrix(o.mounting) * (o.lever_landmark - o.lever_odometer)));
 }
@@ -168,7 +168,8 @@ Tie make_tie(const sensors::LandmarkSample& l, std::size_t index, std::size_t k,
 }
 
 Placement place(Reckoning& r, const LandmarkInput& in, const std::vector<std::size_t>& usable, const StaticStart& start,
-                const Prior& prior, const DrivingNoise& noise, const LandmarkOptions& o) {
+                const Prior& prior, const DrivingNoise& noise, std::span<const filter::SmoothedEpoch<roll::size>> roll,
+                const LandmarkOptions& o) {
   std::vector<std::size_t> at(usable.size());
   for (std::size_t i = 0; i < usable.size(); ++i) at[i] = node_at(r.nodes, (*in.landmarks)[usable[i]].time);
   ModelErrors errors{.mounting = o.mounting_sigma,
@@ -180,18 +181,18 @@ Placement place(Reckoning& r, const LandmarkInput& in, const std::vector<std::si
                      .latitude = (*in.landmarks)[0].position.latitude};
   Placement p;
   std::vector<double> pitch(usable.size(), 0.0);
-  Eigen::Vector3d anchor_shift = Eigen::Vector3d::Zero();
+  const auto lever = [&](std::size_t i) {
+    return lever_n(r.nodes[at[i]], p.heading, roll[at[i]].estimate.mean(roll::angle), pitch[i], o);
+  };
   std::size_t anchor = 0;
   for (int round = 0; round < most_rounds; ++round) {
     const auto& l = (*in.landmarks)[usable[anchor]];
-    const Eigen::Vector3d to_odometer = -lever_n(r.nodes[at[anchor]], p.heading, pitch[anchor], o);
-    place_nodes(r.nodes, p.heading, p.scale, at[anchor],
-                geodesy::wgs84.displaced(l.position, to_odometer + anchor_shift));
+    const Eigen::Vector3d to_odometer = -lever(anchor);
+    place_nodes(r.nodes, p.heading, p.scale, at[anchor], geodesy::wgs84.displaced(l.position, to_odometer));
     p.ties.clear();
     for (std::size_t i = 0; i < usable.size(); ++i) {
       const Node& node = r.nodes[at[i]];
-      p.ties.push_back(make_tie((*in.landmarks)[usable[i]], usable[i], at[i], node,
-                                lever_n(node, p.heading, pitch[i], o), p.heading, o));
+      p.ties.push_back(make_tie((*in.landmarks)[usable[i]], usable[i], at[i], node, lever(i), p.heading, o));
     }
     p.stretches = judge_stretches(r.nodes, at, errors);
     p.channels = build_channels(r.nodes, p.stretches, prior, noise);
@@ -294,16 +295,18 @@ Expected<LandmarkSolution> run_landmark_dead_reckoning(const LandmarkInput& inpu
       .path_walk = options.path_walk,
       .distance_walk = options.distance_walk};
   progress.report("landmarks", 0.0);
-  const Placement placed = place(*reckoning, input, *usable, *start, prior, noise, options);
-  if (auto ok = report_landmarks(input, placed, options, record); !ok) return tl::unexpected(ok.error());
   std::vector<RollTie> rolls;
-  for (const Tie& tie : placed.ties) {
-    const auto more =
-        roll_ties(*input.imu, (*input.landmarks)[tie.landmark], reckoning->nodes[tie.node], tie.node, options);
-    if (tie.node > 0) rolls.insert(rolls.end(), more.begin(), more.end());
+  for (const std::size_t i : *usable) {
+    const auto& l = (*input.landmarks)[i];
+    const std::size_t k = node_at(reckoning->nodes, l.time);
+    const auto more = roll_ties(*input.imu, l, reckoning->nodes[k], k, options);
+    if (k > 0) rolls.insert(rolls.end(), more.begin(), more.end());
   }
+  auto roll = smooth_roll(reckoning->nodes, prior, noise, rolls, options.smoother);
+  const Placement placed = place(*reckoning, input, *usable, *start, prior, noise, roll, options);
+  if (auto ok = report_landmarks(input, placed, options, record); !ok) return tl::unexpected(ok.error());
   progress.report("smoothing", 0.0);
-  const Smoothed smoothed = smooth(placed.channels, placed.ties, placed.fits, rolls, options.smoother);
+  const Smoothed smoothed = smooth(placed.channels, placed.ties, placed.fits, std::move(roll), options.smoother);
   if (progress.cancelled()) return fail({.found = "cancelled"});
 
   result.observability = observability_of(reckoning->nodes, placed.channels, placed.ties, placed.fits, prior, smoothed);

@@ -89,11 +89,11 @@ LevelStep level_step(const Motion& m, const DrivingNoise& noise, const ModelNois
   return step;
 }
 
-RollStep roll_step(const Motion& m, const DrivingNoise& noise) {
+RollStep roll_step(double duration, const DrivingNoise& noise) {
   using namespace roll;
   RollStep step;
-  step.transition(angle, bias) = -m.duration;
-  const double dt = m.duration, q = square(noise.random_walk), qb = square(noise.bias_walk);
+  step.transition(angle, bias) = -duration;
+  const double dt = duration, q = square(noise.random_walk), qb = square(noise.bias_walk);
   step.noise(angle, angle) = q * dt + qb * dt * dt * dt / 3.0;
   step.noise(angle, bias) = step.noise(bias, angle) = -qb * dt * dt / 2.0;
   step.noise(bias, bias) = qb * dt;

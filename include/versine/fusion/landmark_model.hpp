@@ -63,7 +63,7 @@ struct ModelNoise {
 /// Eqs. 19 and 24 over one step. The noise is exact for constant speed and heading within the step.
 [[nodiscard]] VerticalStep vertical_step(const Motion& m, const DrivingNoise& noise, const ModelNoise& model = {});
 [[nodiscard]] LevelStep level_step(const Motion& m, const DrivingNoise& noise, const ModelNoise& model = {});
-[[nodiscard]] RollStep roll_step(const Motion& m, const DrivingNoise& noise);
+[[nodiscard]] RollStep roll_step(double duration, const DrivingNoise& noise);
 
 /// Eq. 21 and eq. 24: estimated position minus landmark, n-frame, m; `covariance` of the landmark.
 [[nodiscard]] filter::LinearObservation<vertical::size, 1> observe_down(double z, double variance);
