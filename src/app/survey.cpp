@@ -25,17 +25,18 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-fusion::AidedInsInput estimator_input(const SurveyInput& input) {
+/// Takes the series over: hours of IMU are not held twice.
+fusion::AidedInsInput estimator_input(SurveyInput& input) {
   fusion::AidedInsInput out;
-  out.imu = input.imu.series;
+  for (std::size_t i = 1; i < input.imu.segments.size(); ++i) {
+    out.segment_starts.push_back(input.imu.series[input.imu.segments[i].begin].time);
+  }
+  out.imu = std::move(input.imu.series);
   out.gnss = input.gnss;
   if (!input.odometers.empty()) out.odometer = input.odometers.front();
   out.speed = input.speed;
   out.landmarks = input.landmarks;
   out.heading = input.heading;
-  for (std::size_t i = 1; i < input.imu.segments.size(); ++i) {
-    out.segment_starts.push_back(input.imu.series[input.imu.segments[i].begin].time);
-  }
   return out;
 }
 

@@ -53,6 +53,7 @@ Expected<void> load_imu(const SurveyConfig& config, SurveyInput& input) {
   auto checked = sensors::check_imu(std::move(raw->series), {.file = name});
   if (!checked) return tl::unexpected(checked.error());
   input.imu = std::move(*checked);
+  input.imu.series.samples.shrink_to_fit();  // what reading left over would stay through the whole run
   sensors::ImuPlausibilityOptions plausible{.file = name};
   // A mounting that is declared leans the IMU on purpose.
   plausible.max_tilt = config.max_tilt.value_or(

@@ -15,8 +15,11 @@ namespace versine::app {
 enum class SurveyMethod { aided_ins, landmark };
 
 struct SurveyConfig {
-  /// A trajectory at 10 Hz keeps hours of recording small; versines and coordinates lose nothing by it.
-  SurveyConfig() { estimator.output_rate = 10.0; }
+  /// A trajectory at 10 Hz and innovations each second keep hours of recording small.
+  SurveyConfig() {
+    estimator.output_rate = 10.0;
+    estimator.innovation_interval = 1.0;
+  }
 
   std::string job = "survey";
   std::string title;
