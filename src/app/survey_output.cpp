@@ -128,7 +128,11 @@ Expected<SurveyRun> write_survey(const SurveyConfig& config, SurveyResult& resul
   }
   const auto projection = project_crs(config, solution.smoothed);
   if (!projection) return tl::unexpected(projection.error());
-  const io::TrajectoryOutput output{.projection = &*projection};
+  io::TrajectoryOutput output{.projection = &*projection};
+  // Dead reckoning delivers every IMU sample; the aided INS has thinned its trajectory already.
+  if (config.method == SurveyMethod::landmark && config.estimator.output_rate > 0.0) {
+    output.interval = Duration::from_seconds(1.0 / config.estimator.output_rate);
+  }
 
   const auto started = std::chrono::steady_clock::now();
   std::vector<std::function<Expected<void>()>> writers;
