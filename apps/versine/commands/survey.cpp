@@ -29,7 +29,7 @@ int survey(const JobOptions& options) {
 
 void add_survey(CLI::App& app, int& exit) {
   auto* command = app.add_subcommand("survey", "Process a recording of a trolley or vehicle into a trajectory with its "
-                                               "uncertainty, and into track geometry");
+                                               "uncertainty");
   auto options = std::make_shared<JobOptions>();
   add_job_options(*command, *options);
   command->callback([options, &exit] { exit = survey(*options); });
