@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 
 #include "versine/geodesy/attitude.hpp"
 #include "versine/io/total_station_readings.hpp"
@@ -63,8 +64,9 @@ void note_results(StationingOutcome& out) {
                                      .time = f.from.value_or(Time{}),
                                      .reason = fmt::format("{}: {}", f.name, f.error.message())});
   }
+  std::map<std::string, std::vector<std::string>> told;  // what many stations share is told once
   for (const StationResult& s : out.run.stations) {
-    for (const auto& w : s.warnings) out.record.warnings.push_back(fmt::format("station {}: {}", s.name, w));
+    for (const auto& w : s.warnings) told[w].push_back(s.name);
     for (const auto& e : s.excluded) {
       out.record.rejections.push_back(
           {.sensor = "total station",
@@ -77,6 +79,11 @@ void note_results(StationingOutcome& out) {
       out.record.warnings.push_back(
           fmt::format("station {}: poor geometry: {}", s.name, fmt::join(s.geometry.remarks, "; ")));
     }
+  }
+  for (const auto& [text, stations] : told) {
+    out.record.warnings.push_back(stations.size() == 1 ? fmt::format("station {}: {}", stations.front(), text)
+                                                       : fmt::format("{} stations ({} to {}): {}", stations.size(),
+                                                                     stations.front(), stations.back(), text));
   }
   for (const auto& m : out.run.moved) {
     out.record.warnings.push_back(
