@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <pugixml.hpp>
 
 #include "field_text.hpp"
 #include "position_columns.hpp"
+#include "text_output.hpp"
 #include "versine/core/units.hpp"
 #include "versine/io/table_reader.hpp"
 #include "versine/io/total_station_formats.hpp"
@@ -143,19 +143,14 @@ Expected<std::vector<ControlEntry>> read_control_points(const ControlFile& file)
 }
 
 Expected<void> write_control_points(const std::filesystem::path& path, std::span<const ControlEntry> points) {
-  std::ofstream out(path);
-  out << "name,latitude_deg,longitude_deg,height_m,sigma_north_mm,sigma_east_mm,sigma_up_mm\n";
+  TextOutput out(path);
+  out.text("name,latitude_deg,longitude_deg,height_m,sigma_north_mm,sigma_east_mm,sigma_up_mm\n");
   for (const ControlEntry& p : points) {
-    out << fmt::format("{},{:.12f},{:.12f},{:.6f},{:.3f},{:.3f},{:.3f}\n", p.name, p.position.latitude / units::deg,
-                       p.position.longitude / units::deg, p.position.height, p.sigma_ned.x() * 1e3,
-                       p.sigma_ned.y() * 1e3, p.sigma_ned.z() * 1e3);
+    out.print("{},{:.12f},{:.12f},{:.6f},{:.3f},{:.3f},{:.3f}\n", p.name, p.position.latitude / units::deg,
+              p.position.longitude / units::deg, p.position.height, p.sigma_ned.x() * 1e3, p.sigma_ned.y() * 1e3,
+              p.sigma_ned.z() * 1e3);
   }
-  out.flush();
-  if (!out) {
-    return fail(
-        {.file = path.string(), .found = "the file could not be written", .advice = "is there space on the disk?"});
-  }
-  return {};
+  return out.close();
 }
 
 }  // namespace versine::io

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <set>
 
 #include "field_text.hpp"
+#include "text_output.hpp"
 #include "time_columns.hpp"
 #include "versine/core/units.hpp"
 #include "versine/io/table_reader.hpp"
@@ -177,27 +177,23 @@ Expected<FieldBook> read_total_station(const TableFile& file) {
 }
 
 Expected<void> write_total_station(const std::filesystem::path& path, std::span<const Stationing> stationings) {
-  std::ofstream out(path);
-  out << "station,point,time_from_s,time_to_s,direction_gon,zenith_gon,distance_m,face,set,instrument_height_m,"
-         "target_height_m,prism_constant_mm\n";
+  TextOutput out(path);
+  out.text(
+      "station,point,time_from_s,time_to_s,direction_gon,zenith_gon,distance_m,face,set,instrument_height_m,"
+      "target_height_m,prism_constant_mm\n");
   const auto seconds = [](const std::optional<Time>& t) { return t ? seconds_text(*t) : std::string(); };
   for (const Stationing& s : stationings) {
     for (const Sighting& r : s.sightings) {
       const double direction =
           r.direction - 2.0 * std::numbers::pi * std::floor(r.direction / (2.0 * std::numbers::pi));
-      out << fmt::format("{},{},{},{},{:.7f},{:.7f},{},{},{},{:.4f},{:.4f},{:.3f}\n", s.name, r.point,
-                         seconds(r.from ? r.from : s.from), seconds(r.to ? r.to : s.to), direction / units::gon,
-                         r.zenith / units::gon, std::isnan(r.distance) ? "" : fmt::format("{:.6f}", r.distance),
-                         r.face == Face::one ? 1 : 2, r.set > 0 ? fmt::format("{}", r.set) : "", s.instrument_height,
-                         r.target_height, r.prism_constant * 1e3);
+      out.print("{},{},{},{},{:.7f},{:.7f},{},{},{},{:.4f},{:.4f},{:.3f}\n", s.name, r.point,
+                seconds(r.from ? r.from : s.from), seconds(r.to ? r.to : s.to), direction / units::gon,
+                r.zenith / units::gon, std::isnan(r.distance) ? "" : fmt::format("{:.6f}", r.distance),
+                r.face == Face::one ? 1 : 2, r.set > 0 ? fmt::format("{}", r.set) : "", s.instrument_height,
+                r.target_height, r.prism_constant * 1e3);
     }
   }
-  out.flush();
-  if (!out) {
-    return fail(
-        {.file = path.string(), .found = "the file could not be written", .advice = "is there space on the disk?"});
-  }
-  return {};
+  return out.close();
 }
 
 }  // namespace versine::io

@@ -54,6 +54,16 @@ GnssProcessing spirent(const fs::path& folder) {
   return g;
 }
 
+GnssProcessing geonet(const fs::path& folder) {
+  GnssProcessing g;
+  g.rover = {input(folder / "07590920.05o")};
+  g.base = {input(folder / "30400920.05o")};
+  g.navigation = {input(folder / "07590920.05n")};
+  g.base_ecef = Eigen::Vector3d(-3978241.958, 3382840.234, 3649900.853);
+  g.options.systems = {"GPS"};
+  return g;
+}
+
 Expected<GnssResult> process(const GnssProcessing& g) {
   SilentProgress progress;
   SilentLog log;
@@ -77,12 +87,7 @@ TEST(GnssEngine, SpirentStaticRoverWithinTwoMillimetres) {
 TEST(GnssEngine, GeonetStaticBaseline) {
   VERSINE_NEEDS(folder, "rinex/geonet-0759-3040");
   VERSINE_NEEDS_RTKLIB();
-  GnssProcessing g;
-  g.rover = {input(folder / "07590920.05o")};
-  g.base = {input(folder / "30400920.05o")};
-  g.navigation = {input(folder / "07590920.05n")};
-  g.base_ecef = Eigen::Vector3d(-3978241.958, 3382840.234, 3649900.853);
-  g.options.systems = {"GPS"};
+  GnssProcessing g = geonet(folder);
   const auto r = process(g);
   ASSERT_TRUE(r) << r.error().message();
   const Eigen::Vector3d e = mean(r->series) - Eigen::Vector3d(-3976219.1868, 3382371.6036, 3652511.1412);
@@ -95,12 +100,7 @@ TEST(GnssEngine, GeonetStaticBaseline) {
 TEST(GnssEngine, AgreesWithRtklibsOwnProgram) {
   VERSINE_NEEDS(folder, "rinex/geonet-0759-3040");
   VERSINE_NEEDS_RTKLIB();
-  GnssProcessing g;
-  g.rover = {input(folder / "07590920.05o")};
-  g.base = {input(folder / "30400920.05o")};
-  g.navigation = {input(folder / "07590920.05n")};
-  g.base_ecef = Eigen::Vector3d(-3978241.958, 3382840.234, 3649900.853);
-  g.options.systems = {"GPS"};
+  GnssProcessing g = geonet(folder);
   g.options.lock_epochs = 0;
   g.options.fix_elevation = 0.0;
   const auto r = process(g);
