@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 /// A survey in files: control.csv, readings.csv, job.toml; with known truth.
 struct Files {
-  fs::path folder = fs::temp_directory_path() / "versine-stationing-test";
+  fs::path folder = fs::temp_directory_path() / (std::string("versine-stationing-") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
   geodesy::LocalFrame frame{geodesy::Geodetic{0.85, 0.16, 300.0}};
   std::vector<stationing::ControlPoint> nominal;
   std::vector<Truth> truth;
