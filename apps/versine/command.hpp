@@ -19,7 +19,9 @@ enum Exit : int {
 
 /// All commands. Each declares its options and leaves a callback that sets `exit`. A new command is one file in
 /// commands/, its line here and its place in main.cpp's list, which is the order of the help.
+void add_calibrate(CLI::App& app, int& exit);
 void add_check(CLI::App& app, int& exit);
+void add_geometry(CLI::App& app, int& exit);
 void add_georef(CLI::App& app, int& exit);
 void add_info(CLI::App& app, int& exit);
 void add_init(CLI::App& app, int& exit);
