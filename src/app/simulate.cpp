@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "versine/app/version.hpp"
+#include "versine/io/landxml.hpp"
 #include "versine/io/result_folder.hpp"
 #include "versine/io/run_json.hpp"
 #include "versine/io/write_journey.hpp"
@@ -42,7 +43,13 @@ Expected<void> write_run(const std::filesystem::path& folder, const SimulateConf
   if (auto done = io::write_truth(folder, recording.truth, csv_truth); !done) {
     return tl::unexpected(std::move(done.error()));
   }
-  if (!config.journey.present) return write_text(folder / "survey.toml", survey_job_for(config, recording));
+  if (!config.journey.present) {
+    // LandXML has no words for some transitions: such a line goes without its design.
+    const bool with_design =
+        !config.has_vehicle &&
+        io::write_landxml(folder / "design.xml", {&config.scenario.track.alignment, 1}).has_value();
+    return write_text(folder / "survey.toml", survey_job_for(config, recording, with_design));
+  }
   if (auto done = io::write_onboard(folder / "journey.h5", recording); !done) return done;
   return write_text(folder / "georef.toml", georef_job_for(config.journey));
 }

@@ -13,7 +13,7 @@ std::string list(const Eigen::Vector3d& v) {
 }
 }  // namespace
 
-std::string survey_job_for(const SimulateConfig& c, const simulation::SimulatedRecording& r) {
+std::string survey_job_for(const SimulateConfig& c, const simulation::SimulatedRecording& r, bool with_design) {
   const auto& trolley = c.scenario.trolley;
   const geodesy::Euler& mounting = c.has_vehicle ? c.vehicle.mounting : trolley.mounting;
   // A job gives lever arms in the IMU's axes, a scenario in the trolley's.
@@ -56,6 +56,21 @@ std::string survey_job_for(const SimulateConfig& c, const simulation::SimulatedR
     text +=
         fmt::format("\n[total_station]\nreadings = [\"readings.csv\"]\ncontrol = [\"control.csv\"]\nlever_arm_m = {}\n",
                     list(C_bv * c.total_station.place));
+  }
+  if (!c.has_vehicle && !r.imu.empty()) {
+    const auto& track = c.scenario.track;
+    text += fmt::format("\n[geometry]\ncrs = \"{}\"\n", track.alignment.crs);
+    if (with_design) {
+      const bool axis = track.cant_pivot == simulation::TrackModel::CantPivot::axis;
+      text += fmt::format("design = \"design.xml\"\nheight_reference = \"{}\"\n", axis ? "axis" : "low-rail");
+    }
+    text += fmt::format(
+        "[geometry.trolley]\nfront_x_m = {:.6g}\nrear_x_m = {:.6g}\nother_x_m = {:.6g}\nreference_y_m = {:.6g}\n"
+        "contact_z_m = {:.6g}\nrange_x_m = {:.6g}\ngauge_offset_mm = {:.9g}\ngauge_temperature_mm_per_degC = {:.6g}\n",
+        trolley.front_x, trolley.rear_x, trolley.other_x, trolley.reference_y, trolley.contact_z, trolley.range_x,
+        trolley.gauge_offset / units::mm, trolley.gauge_temperature_factor / units::mm);
+    if (!r.gauge.empty()) text += "[geometry.gauge]\nfile = \"gauge.csv\"\n";
+    if (!r.sleeper.empty()) text += "[geometry.sleeper]\nfile = \"sleeper.csv\"\n";
   }
   return text;
 }

@@ -87,6 +87,14 @@ Expected<SurveyResult> compute_survey(const SurveyConfig& config, const std::fil
     result.withheld = compare_withheld(hidden, solved->solution.smoothed, config.estimator.gnss_lever.l_b);
   }
   watch.stage("align, filter and smooth");
+  if (config.geometry.present) {
+    const auto& solution = solved->solution;
+    auto geometry = compute_track_geometry(config.geometry, solution.smoothed, &solution.chain, input->odometers,
+                                           config.output.crs, progress);
+    if (!geometry) return tl::unexpected(geometry.error());
+    result.geometry = std::move(*geometry);
+    watch.stage("track geometry");
+  }
   result.input = std::move(*input);
   result.estimate = std::move(*solved);
   return result;

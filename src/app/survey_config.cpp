@@ -126,13 +126,14 @@ void describe_wheels(ConfigVisitor& v, SurveyConfig& c) {
     t.value("margin_s", e.standstill.margin, seconds("Taken off both ends, where the vehicle still rocks."));
     t.value("acceleration_spread_mps2", e.standstill.acceleration_spread,
             {.doc = "Standard deviation of the specific force in one second that still counts as standing.",
-             .unit = "m/s^2", .positive = true});
-    t.value("rate_spread_radps", e.standstill.rate_spread, {.doc = "The same of the angular rate.", .unit = "rad/s",
-                                                            .positive = true});
-    t.value("rate_mean_radps", e.standstill.rate_mean, {.doc = "Mean angular rate beyond the gyros' bias.",
-                                                        .unit = "rad/s", .positive = true});
-    t.value("zero_rate_sigma_radps", e.zero_rate_sigma, {.doc = "Of the zero angular rate, beyond the gyros' noise.",
-                                                         .unit = "rad/s", .positive = true});
+             .unit = "m/s^2",
+             .positive = true});
+    t.value("rate_spread_radps", e.standstill.rate_spread,
+            {.doc = "The same of the angular rate.", .unit = "rad/s", .positive = true});
+    t.value("rate_mean_radps", e.standstill.rate_mean,
+            {.doc = "Mean angular rate beyond the gyros' bias.", .unit = "rad/s", .positive = true});
+    t.value("zero_rate_sigma_radps", e.zero_rate_sigma,
+            {.doc = "Of the zero angular rate, beyond the gyros' noise.", .unit = "rad/s", .positive = true});
     t.value("sigma_mps", e.zero_velocity_sigma, speed("Of the zero velocity."));
     t.value("interval_s", e.zero_interval, seconds("Between two updates while standing."));
   });
@@ -241,6 +242,9 @@ void describe(ConfigVisitor& v, SurveyConfig& c) {
                             "length."));
             t.value("start_s", c.withhold.start, seconds("First window after the first epoch."));
           });
+  v.table(
+      "geometry", "Track geometry from the trajectory (docs/track-geometry.md); without this table there is none.",
+      [&](ConfigVisitor& t) { describe(t, c.geometry); }, &c.geometry.present);
   v.table("output", "What is written, and where.", [&](ConfigVisitor& t) { describe_output(t, c); });
 }
 
@@ -259,6 +263,12 @@ Expected<SurveyConfig> read_survey_config(const std::filesystem::path& job, std:
     return tl::unexpected(std::move(error));
   }
   config.estimator.imu_errors = *errors;
+  if (config.geometry.present) {
+    config.geometry.trolley.mounting = config.estimator.mounting;
+    if (config.geometry.crs.empty()) config.geometry.crs = config.output.crs;
+    // Sigmas of versines need the joint errors.
+    if (config.estimator.chain_rate == 0.0) config.estimator.chain_rate = 1.0;
+  }
   return config;
 }
 

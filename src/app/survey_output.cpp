@@ -70,6 +70,7 @@ json summary_of(const SurveyConfig& config, const SurveyResult& result, const st
                                                                        {"sigma", errors.back().sigma(k)}};
     }
   }
+  if (result.geometry) out["geometry"] = json::parse(geometry_summary_json(*result.geometry));
   if (result.withheld) {
     const WithheldErrors& w = *result.withheld;
     out["withheld"] = {{"window_s", config.withhold.window},
@@ -97,6 +98,7 @@ std::string text_of(const SurveyResult& result, const json& s) {
     text += fmt::format("  {}: {} x {}, {}\n", f.sensor, f.count, f.kind, to_string(f.action));
   }
   for (const auto& warning : result.estimate.solution.record.warnings) text += "  warning: " + warning + "\n";
+  if (result.geometry) text += geometry_summary_text(*result.geometry);
   if (s.contains("withheld")) {
     const auto& w = s["withheld"];
     text += fmt::format(
@@ -157,8 +159,12 @@ Expected<SurveyRun> write_survey(const SurveyConfig& config, SurveyResult& resul
       return io::write_innovations_csv(folder.path("innovations.csv"), solution.innovations, solution.smoothed.scale);
     });
   }
+  if (result.geometry) {
+    writers.emplace_back([&] { return write_track_geometry(config.geometry, *result.geometry, folder, progress); });
+  }
   RunRecord record = std::move(result.input.record);
   record.append(solution.record);
+  if (result.geometry) record.append(result.geometry->geometry.record);
   writers.emplace_back([&] {
     return io::write_rejections_csv(folder.path("rejections.csv"), record.rejections, solution.smoothed.scale);
   });
@@ -179,6 +185,9 @@ Expected<SurveyRun> write_survey(const SurveyConfig& config, SurveyResult& resul
   run.started_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
   run.time_scale = solution.smoothed.scale;
   run.inputs = result.input.files;
+  if (result.geometry) {
+    run.inputs.insert(run.inputs.end(), result.geometry->files.begin(), result.geometry->files.end());
+  }
   run.settings_json = config_json([&](ConfigVisitor& v) { describe(v, described); });
   run.timings_s = result.timings_s;
   run.results_json = summary.dump();

@@ -110,7 +110,10 @@ void note_flags(Geometry& out) {
   const std::pair<Flag, const char*> told[] = {{no_gauge, "without gauge: the axis is placed by the nominal gauge"},
                                                {no_trajectory, "inside gaps of the trajectory: no values"},
                                                {off_design, "off the design: no deviations"},
-                                               {repeated, "passed more than once: the first pass is used"}};
+                                               {repeated, "passed more than once: the first pass is used"},
+                                               {few_samples,
+                                                "with too few poses for the fit, which was widened there: ask for a "
+                                                "higher rate of the trajectory"}};
   for (const auto& [flag, text] : told) {
     if (const auto n = count(flag); n > 0) {
       out.record.warnings.push_back(fmt::format("{:.2f} m of track {}", double(n) * out.step, text));

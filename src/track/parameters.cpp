@@ -201,7 +201,7 @@ void add_gauge_cross_level_twist(Stage& s) {
     Column& w = s.out.add("twist_" + metres(base), "mm/m", 1e-3,
                           fmt::format("Twist (D(s) - D(s - l)) / l over l = {}, cant ramps included", metres(base)));
     for (std::size_t i = 0; i < n; ++i) {
-      w.value[i] = (s.rails.cross_level[i] - grid_value(s.rails.cross_level, double(i) - base / s.options.step)) / base;
+      w.value[i] = (cross_level[i] - grid_value(cross_level, double(i) - base / s.options.step)) / base;
     }
     s.relative.fill(w, Rail::left, Direction::roll, {{-base, -1.0}, {0.0, 1.0}}, noise, 1.0 / base);
   }

@@ -25,7 +25,8 @@ struct SimulateRun {
                                                  const std::filesystem::path& output, int runs, int threads,
                                                  Progress& progress);
 
-/// The survey job that processes such a recording, as TOML.
-[[nodiscard]] std::string survey_job_for(const SimulateConfig& config, const simulation::SimulatedRecording& recording);
+/// The survey job that processes such a recording, as TOML. `with_design`: design.xml lies beside it.
+[[nodiscard]] std::string survey_job_for(const SimulateConfig& config, const simulation::SimulatedRecording& recording,
+                                         bool with_design = false);
 
 }  // namespace versine::app

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "versine/app/geometry.hpp"
 #include "versine/app/survey_config.hpp"
 #include "versine/app/survey_input.hpp"
 #include "versine/app/withhold.hpp"
@@ -17,6 +18,7 @@ struct SurveyResult {
   SurveyInput input;
   fusion::AidedInsResult estimate;
   std::optional<WithheldErrors> withheld;
+  std::optional<GeometryResult> geometry;
   std::vector<std::pair<std::string, double>> timings_s;
 };
 

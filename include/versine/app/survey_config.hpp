@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "versine/app/geometry_config.hpp"
 #include "versine/app/gnss.hpp"
 #include "versine/app/recording_config.hpp"
 #include "versine/app/stationing.hpp"
@@ -40,6 +41,8 @@ struct SurveyConfig {
   /// Everything the estimator wants to know; the keys of the job write straight into it.
   fusion::AidedInsOptions estimator;
   std::vector<double> initial_position;  ///< deg, deg, m
+
+  GeometryConfig geometry;  ///< track geometry, when the job has the table
 
   struct Output {
     std::string folder;
