@@ -121,11 +121,12 @@ void compare(const track::Geometry& g, const Truth& t, const design::Alignment& 
 }
 
 void print(const char* name, const Errors& e, double scale = 1e3) {
-  std::printf("| %s | %.3f | %.3f | %.3f | %s |\n", name, scale * e.rms(), scale * e.p95(),
-              e.with_sigma > 0 ? scale * std::sqrt(e.variance / e.with_sigma) : std::nan(""),
-              e.with_sigma > 0
-                  ? (std::to_string(std::round(1000.0 * e.inside / e.with_sigma) / 10.0).substr(0, 4) + " %").c_str()
-                  : "-");
+  std::printf("| %s | %.3f | %.3f | ", name, scale * e.rms(), scale * e.p95());
+  if (e.with_sigma > 0) {
+    std::printf("%.3f | %.1f %% |\n", scale * std::sqrt(e.variance / e.with_sigma), 100.0 * e.inside / e.with_sigma);
+  } else {
+    std::printf("- | - |\n");
+  }
 }
 
 }  // namespace

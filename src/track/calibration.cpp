@@ -12,6 +12,7 @@
 #include "versine/geodesy/ellipsoid.hpp"
 #include "versine/track/mileage.hpp"
 #include "versine/track/resampling.hpp"
+#include "versine/track/versine.hpp"
 
 namespace versine::track {
 namespace {
@@ -33,6 +34,22 @@ std::vector<double> path_azimuth(const geodesy::Trajectory& trajectory, const Ru
     if (run.mileage[b] - run.mileage[a] > 0.8 * base) out[i] = std::atan2(run.direction * d.y(), run.direction * d.x());
   }
   return out;
+}
+
+/// The x axis follows the reference rail, which is the other one after turning round: where the cant changes, the two
+/// rails' gradients differ by its rate. Brings the pitch to that of the track's axis.
+void remove_ramps(AttitudeLine& line, const Trolley& trolley, const GeometryOptions& options) {
+  const double rail = trolley.reference_side() * line.direction < 0.0 ? 1.0 : -1.0;  // left: rises with the cross level
+  std::vector<double> level;
+  for (const double roll : line.roll) level.push_back(line.direction * options.rail_distance * std::sin(roll));
+  const double ahead = (trolley.front_x - trolley.other_x) * line.direction / line.step;
+  const double behind = (trolley.rear_x - trolley.other_x) * line.direction / line.step;
+  for (std::size_t i = 0; i < level.size(); ++i) {
+    const double rate = line.direction *
+                        (grid_value(level, double(i) + ahead) - grid_value(level, double(i) + behind)) /
+                        trolley.wheelbase();
+    line.pitch[i] -= line.direction * rail * 0.5 * rate;
+  }
 }
 
 struct Mean {
@@ -103,6 +120,7 @@ Expected<AttitudeLine> attitude_line(const GeometryInput& input, const GeometryO
   out.roll = moving_average(run->mileage, roll, out.mileage, options.step, options.max_gap);
   out.pitch = moving_average(run->mileage, pitch, out.mileage, options.step, options.max_gap);
   out.heading_error = moving_average(run->mileage, heading, out.mileage, options.step, options.max_gap);
+  remove_ramps(out, input.trolley, options);
   return out;
 }
 
@@ -121,7 +139,7 @@ Expected<MountingCalibration> calibrate_mounting(const std::vector<AttitudeLine>
     seen[k] = true;
     step = p.step;
     for (std::size_t i = 0; i < p.mileage.size(); ++i) {
-      if (!std::isfinite(p.roll[i])) continue;
+      if (!std::isfinite(p.roll[i]) || !std::isfinite(p.pitch[i])) continue;
       Cell& c = cells[std::llround(p.mileage[i] / p.step)];
       c.roll[k] += p.roll[i];
       c.pitch[k] += p.pitch[i];

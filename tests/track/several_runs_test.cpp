@@ -54,7 +54,7 @@ TEST(Calibration, PassesInBothOrientationsGiveTheMounting) {
   const geodesy::Euler truth{0.02 * units::deg, -0.03 * units::deg, 0.05 * units::deg};
   std::vector<AttitudeLine> with_design, without;
   for (const double direction : {1.0, -1.0}) {
-    auto run = builder.run(20, 380, 0.05, direction, direction);
+    auto run = builder.run(20, 600, 0.05, direction, direction);
     for (auto& p : run.trajectory.samples) p.q_nb = p.q_nb * geodesy::to_quaternion(truth);  // C_nb = C_nv C_vb
     // The IMU's point stays; only its axes are turned in the trolley.
     GeometryInput input;
@@ -66,9 +66,10 @@ TEST(Calibration, PassesInBothOrientationsGiveTheMounting) {
   }
   const auto c = calibrate_mounting(with_design, {});
   ASSERT_TRUE(c) << c.error().message();
-  EXPECT_NEAR(c->mounting.roll, truth.roll, 2e-6);
-  EXPECT_NEAR(c->mounting.pitch, truth.pitch, 2e-6);
-  EXPECT_NEAR(c->mounting.yaw, truth.yaw, 2e-6);
+  // Ramps, an arc and cant are part of the stretch.
+  EXPECT_NEAR(c->mounting.roll, truth.roll, 5e-6);
+  EXPECT_NEAR(c->mounting.pitch, truth.pitch, 8e-6);
+  EXPECT_NEAR(c->mounting.yaw, truth.yaw, 5e-6);
   EXPECT_GT(c->length, 300.0);
   EXPECT_FALSE(calibrate_mounting({with_design[0], with_design[0]}, {}));
 }
