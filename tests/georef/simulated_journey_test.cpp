@@ -203,7 +203,7 @@ TEST(Constraint, AReviewersTrackIsHonoured) {
   const auto map = chain(2);
   std::mt19937 random(7);
   const auto s = simulate(*map, random, 120.0, 3.0);
-  const Constraint c{{0}, {120'000'000'000}, {"b1"}, true};
+  const Constraint c{{}, {0}, {120'000'000'000}, {"b1"}, true, {}};
   const auto result = georeference(*map, s.recording, honest(), std::span(&c, 1));
   ASSERT_TRUE(result);
   for (const auto& p : result->journeys[0].paths) {

@@ -71,11 +71,13 @@ struct Options {
   double turn_rate_sigma = 0.01;  ///< rad, of a change of azimuth: map and gyro together; used with an IMU that turns
 };
 
-/// What a reviewer decided: within [from, to] the vehicle was on the tracks (or was not).
+/// What a reviewer decided: within [from, to] the vehicle was on these tracks only (or on none of them).
 struct Constraint {
+  std::string recording;  ///< Recording::name; empty: every recording
   Time from, to;
-  std::vector<std::string> tracks;  ///< line identifiers of the map; the vehicle was on one of them
+  std::vector<std::string> tracks;  ///< identifiers of tracks, or of lines of the map
   bool excluded = false;            ///< it was on none of them
+  std::string comment;              ///< for people
 };
 
 }  // namespace versine::georef
