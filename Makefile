@@ -4,7 +4,7 @@ JOBS ?= $(shell nproc)
 BUILD := build/release
 VERSINE := $(BUILD)/apps/versine/versine
 
-.PHONY: all setup build test demo accuracy format clean
+.PHONY: all setup build test demo accuracy figures benchmarks format clean
 all: build
 
 setup:
@@ -30,6 +30,15 @@ demo: build
 # Accuracy on the real recordings (docs/accuracy.md); VERSINE_DATA names their folder.
 accuracy: build
 	VERSINE_DATA=$${VERSINE_DATA:-../shared/data} benchmarks/accuracy_real.py $(VERSINE)
+
+# The pictures of the documentation.
+figures: benchmarks
+	$(BUILD)/benchmarks/versine_simulation_figures docs/images
+
+# The programs of benchmarks/, for accuracy tables and timings.
+benchmarks: build
+	cmake -B $(BUILD) -DVERSINE_BENCHMARKS=ON
+	cmake --build $(BUILD) -j $(JOBS)
 
 format:
 	git ls-files '*.cpp' '*.hpp' | xargs clang-format -i

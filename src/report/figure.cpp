@@ -78,8 +78,10 @@ Scale make_scale(const Axis& axis, Extent data, double from, double to, bool fro
 std::vector<double> axis_ticks(const Scale& s, int count) {
   if (!s.logarithmic) return ticks(s.low, s.high, count);
   std::vector<double> t;
+  const bool decades_only = s.high / s.low > 2e3;  // more labels would run into each other
   for (double p = std::pow(10.0, std::floor(std::log10(s.low))); p <= s.high * 1.0001; p *= 10.0) {
     for (const double m : {1.0, 2.0, 5.0}) {
+      if (decades_only && m > 1.0) break;
       if (m * p >= s.low * 0.9999 && m * p <= s.high * 1.0001) t.push_back(m * p);
     }
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "versine/simulation/imu.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -22,7 +23,7 @@ class Triad {
     double quantum, vibration;
   };
   Triad(const std::string& name, const sensors::TriadErrors& errors, ImuModel::Instability instability,
-        const Given& given, double step, std::uint64_t seed, Truth& truth)
+        const Given& given, double step, double length, std::uint64_t seed, Truth& truth)
       : errors_(errors),
         given_(given),
         root_step_(std::sqrt(step)),
@@ -42,7 +43,7 @@ class Triad {
       truth.constants.emplace_back(name + "_skew" + axis, skew(i));
       walk_.emplace_back(errors.rate_random_walk, step);
       if (instability == ImuModel::Instability::flicker) {
-        flicker_.emplace_back(errors.bias_instability, step, 1e5, slow_);
+        flicker_.emplace_back(errors.bias_instability, step, std::max(1e5, length), slow_);
       } else {
         markov_.emplace_back(errors.bias_instability, errors.correlation_time, step, slow_);
       }
@@ -91,14 +92,15 @@ sensors::ImuSeries with_errors(const sensors::ImuSeries& ideal, const ImuModel& 
                                Truth& truth) {
   sensors::ImuSeries out = ideal;
   const double step = ideal.interval.seconds();
+  const double length = step * static_cast<double>(ideal.size());  // flicker reaches that far down
   Triad gyro(
       "gyro", model.errors.gyro, model.instability,
       {model.gyro_bias, model.gyro_scale, model.gyro_temperature_factor, model.gyro_quantum, model.vibration_gyro},
-      step, seed, truth);
+      step, length, seed, truth);
   Triad accelerometer("accel", model.errors.accelerometer, model.instability,
                       {model.accelerometer_bias, model.accelerometer_scale, model.accelerometer_temperature_factor,
                        model.accelerometer_quantum, model.vibration_accelerometer},
-                      step, seed, truth);
+                      step, length, seed, truth);
   RandomStream clock(seed, "imu.clock");
   const bool vibrates = model.vibration_gyro > 0.0 || model.vibration_accelerometer > 0.0;
   Time before = start;

@@ -4,33 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <complex>
-#include <numbers>
-#include <unsupported/Eigen/FFT>
+
+#include "versine/simulation/power_density.hpp"
 
 namespace versine::simulation {
 namespace {
-
-/// Welch's estimate: mean periodogram of half-overlapping pieces under a Hann window, one-sided, per 1/m.
-std::vector<double> welch(const std::vector<double>& x, double step, std::size_t n) {
-  Eigen::FFT<double> fft;
-  std::vector<double> window(n), density(n / 2 + 1, 0.0);
-  double power = 0.0;
-  for (std::size_t i = 0; i < n; ++i) {
-    window[i] = 0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n));
-    power += window[i] * window[i];
-  }
-  std::size_t pieces = 0;
-  std::vector<double> piece(n);
-  std::vector<std::complex<double>> spectrum;
-  for (std::size_t at = 0; at + n <= x.size(); at += n / 2, ++pieces) {
-    for (std::size_t i = 0; i < n; ++i) piece[i] = window[i] * x[at + i];
-    fft.fwd(spectrum, piece);
-    for (std::size_t k = 0; k <= n / 2; ++k) density[k] += 2.0 * step * std::norm(spectrum[k]) / power;
-  }
-  for (double& d : density) d /= static_cast<double>(pieces);
-  return density;
-}
 
 TEST(Synthesize, DensityMatchesTheRequestedSpectrum) {
   const double step = 0.25;
@@ -40,7 +18,7 @@ TEST(Synthesize, DensityMatchesTheRequestedSpectrum) {
     for (const auto kind :
          {Irregularity::level, Irregularity::alignment, Irregularity::cross_level, Irregularity::gauge}) {
       const auto x = synthesize(spectrum, kind, step, 400000, 2.0, 150.0, 5);
-      const auto density = welch(x, step, n);
+      const auto density = power_density(x, step, n);
       const double df = 1.0 / (static_cast<double>(n) * step);
       double rms_found = 0.0, rms_wanted = 0.0;
       for (std::size_t k = 1; k < density.size(); ++k) {

@@ -5,7 +5,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <numbers>
 
 #include "versine/core/units.hpp"
@@ -31,10 +30,6 @@ Scenario trolley_on(double length, double speed, double stand) {
   return s;
 }
 
-double cpu() {
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
-
 TEST(Simulate, IsReproducibleAndIndependentOfThreads) {
   Scenario s = trolley_on(60.0, 1.0, 20.0);
   s.equipment.gnss = GnssModel{.multipath_per_h = 60.0, .wrong_fix_per_h = 60.0};
@@ -58,38 +53,17 @@ TEST(Simulate, IsReproducibleAndIndependentOfThreads) {
   EXPECT_EQ(simulate(s, 7)->imu.back().dtheta, a.imu.back().dtheta);
 }
 
-TEST(Simulate, OneHourOfTrolleyInUnderFiveSeconds) {
+TEST(Simulate, OneHourOfTrolleyHasEverySample) {
   Scenario s = trolley_on(3400.0, 1.0, 180.0);
   s.equipment.odometers = {{}, {.wheel = OdometerModel::Wheel::a3}};
   s.equipment.gauge = GaugeModel{};
-  s.equipment.sleeper = SleeperModel{};
-  s.equipment.gnss = GnssModel{};
   s.equipment.total_station = TotalStationModel{};
-  const double before = cpu();
   const auto r = simulate(s, 1);
-  const double seconds = cpu() - before;
   ASSERT_TRUE(r) << r.error().message();
-  EXPECT_GT(r->imu.size(), 710000U);
-  RecordProperty("cpu_s", std::to_string(seconds));
-  EXPECT_LT(seconds, 5.0);
-}
-
-TEST(Simulate, FiftyRunsOfTwoMinutesInUnderTwelveSecondsOfCpu) {
-  Scenario s = trolley_on(120.0, 1.0, 5.0);
-  s.equipment.imu->instability = ImuModel::Instability::flicker;
-  s.equipment.odometers = {{}};
-  s.equipment.total_station = TotalStationModel{};
-  const auto world = prepare(s);
-  ASSERT_TRUE(world) << world.error().message();
-  SilentProgress progress;
-  const double before = cpu();
-  std::size_t samples = 0;
-  simulate_runs(
-      **world, 1, 50, 0, [&](auto, auto&& r) { samples += r.imu.size(); }, progress);
-  const double seconds = cpu() - before;
-  EXPECT_GT(samples, 50U * 24000U);
-  RecordProperty("cpu_s", std::to_string(seconds));
-  EXPECT_LT(seconds, 12.0);  // a tenth of 500 runs in 60 s on two cores
+  // 180 s standing, 3390 m at 1 m/s with a smooth start and stop, 10 s standing; 200 Hz.
+  const double expected = 180.0 + 3390.0 + 10.0;
+  EXPECT_NEAR(static_cast<double>(r->imu.size()) / 200.0, expected, 10.0);
+  EXPECT_EQ(r->odometers.size(), 2U);
 }
 
 TEST(Simulate, AllanDeviationRecoversTheInstrument) {
@@ -100,7 +74,7 @@ TEST(Simulate, AllanDeviationRecoversTheInstrument) {
       const auto& triad = gyro ? errors.gyro : errors.accelerometer;
       // Averaging time at which walk and floor are equal: the rate is chosen so that both can be seen.
       const double knee = std::pow(triad.random_walk / (0.664 * triad.bias_instability), 2);
-      const double rate = std::clamp(400.0 / knee, 1.0, 1000.0), step = 1.0 / rate;
+      const double rate = std::min(400.0 / knee, 1000.0), step = 1.0 / rate;
       ImuModel model{.rate = rate, .errors = errors, .instability = ImuModel::Instability::flicker};
       sensors::ImuSeries still;
       still.interval = Duration::from_seconds(step);
@@ -117,7 +91,6 @@ TEST(Simulate, AllanDeviationRecoversTheInstrument) {
         floor += bias_instability_of(curve, 576000.0 * step) / 3.0;
       }
       EXPECT_NEAR(walk / triad.random_walk, 1.0, 0.05) << name << (gyro ? " gyro" : " accelerometer");
-      if (1000.0 * knee > 576000.0 * step) continue;  // too far below the walk to be seen, as in the real instrument
       EXPECT_NEAR(floor / triad.bias_instability, 1.0, 0.2) << name << (gyro ? " gyro" : " accelerometer");
       RecordProperty(std::string(name) + (gyro ? "_gyro" : "_accelerometer"),
                      std::to_string(walk / triad.random_walk) + " " + std::to_string(floor / triad.bias_instability));
