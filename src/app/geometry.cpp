@@ -218,11 +218,17 @@ std::string geometry_summary_json(const GeometryResult& r) {
   if (r.quality) {
     json levels = json::object();
     for (const auto& e : r.quality->exceedances) levels[e.level] = levels.value(e.level, 0) + 1;
-    out["quality"] = {{"limits", r.quality->profile},
-                      {"source", r.quality->source},
-                      {"speed_kmh", r.quality->speed / units::kmh},
-                      {"exceedances", levels},
-                      {"unchecked", r.quality->unchecked}};
+    out["quality"] = {
+        {"limits", r.quality->profile}, {"source", r.quality->source}, {"speed_kmh", r.quality->speed / units::kmh},
+        {"levels", r.quality->levels},  {"exceedances", levels},       {"unchecked", r.quality->unchecked}};
+    for (const track::Limit& limit : r.quality->applied) {
+      const track::Column& c = g.at(limit.column);
+      out["quality"]["limits_applied"].push_back({{"column", c.heading()},
+                                                  {"unit", c.unit},
+                                                  {"level", limit.level},
+                                                  {"low", limit.low / c.scale},
+                                                  {"high", limit.high / c.scale}});
+    }
   }
   const auto add = [&](const char* name, const std::optional<track::Adjustment>& a) {
     if (!a) return;

@@ -75,7 +75,9 @@ Expected<void> write_geometry_columns_csv(const std::filesystem::path& path, con
 Expected<void> write_exceedances_csv(const std::filesystem::path& path, const track::Geometry& g,
                                      const track::Quality& q) {
   TextOutput out(path);
-  out.text("start_m,end_m,peak_m,length_m,column,unit,level,value,sigma,limit,probability_over,easting_m,northing_m\n");
+  out.text(
+      "start_m,end_m,peak_m,length_m,column,unit,level,value,sigma,limit,probability_over,easting_m,northing_m,"
+      "start_distance_m,end_distance_m,peak_distance_m\n");
   const track::Column *e = g.find("easting_axis"), *n = g.find("northing_axis");
   for (const track::Exceedance& x : q.exceedances) {
     const track::Column* c = g.find(x.column);
@@ -92,6 +94,7 @@ Expected<void> write_exceedances_csv(const std::filesystem::path& path, const tr
     if (e != nullptr) out.number(e->value[x.index], 3);
     out.text(",");
     if (n != nullptr) out.number(n->value[x.index], 3);
+    out.print(",{:.2f},{:.2f},{:.2f}", x.start, x.end, x.peak);
     out.end_line();
   }
   return out.close();

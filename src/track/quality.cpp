@@ -158,7 +158,7 @@ Expected<Quality> assess(const Geometry& g, const LimitProfile& profile, double 
                                                                   profile.speeds.back().speed * 3.6, profile.name),
                  .advice = "choose another profile or add a class to it"});
   }
-  Quality out{.profile = profile.name, .source = profile.source, .speed = speed};
+  Quality out{.profile = profile.name, .source = profile.source, .speed = speed, .levels = profile.levels};
   std::map<std::string, ColumnLimits> by_column;
   for (const Limit& limit : it->limits) {
     bool found = false;
@@ -173,6 +173,10 @@ Expected<Quality> assess(const Geometry& g, const LimitProfile& profile, double 
   }
   for (auto& [name, limits] : by_column) {
     std::sort(limits.by_severity.begin(), limits.by_severity.end());
+    for (const auto& [severity, limit] : limits.by_severity) {
+      out.applied.push_back(*limit);
+      out.applied.back().column = name;
+    }
     scan(g, g.at(name), limits, merge, out.exceedances);
   }
   std::sort(out.exceedances.begin(), out.exceedances.end(),

@@ -37,6 +37,8 @@ struct Section {
 struct Quality {
   std::string profile, source;
   double speed = 0.0;                   ///< m/s
+  std::vector<std::string> levels;      ///< of the profile, mildest first
+  std::vector<Limit> applied;           ///< those of this speed, `column` being the geometry's own; mildest first
   std::vector<Exceedance> exceedances;  ///< by mileage
   std::vector<Section> sections;
   std::vector<std::string> unchecked;  ///< limits whose column the geometry does not have
