@@ -9,6 +9,7 @@
 
 #include "versine/app/version.hpp"
 #include "versine/core/units.hpp"
+#include "versine/io/alignment_csv.hpp"
 #include "versine/io/alignment_file.hpp"
 #include "versine/io/geometry_csv.hpp"
 #include "versine/io/geometry_gis.hpp"
@@ -154,6 +155,7 @@ Expected<GeometryResult> compute_track_geometry(const GeometryConfig& config, co
     if (!quality) return tl::unexpected(quality.error());
     out.quality = std::move(*quality);
   }
+  out.design = std::move(files->design);
   if (config.adjust) {
     if (auto done = adjust(config, out); !done) return tl::unexpected(done.error());
   }
@@ -168,6 +170,9 @@ Expected<void> write_track_geometry(const GeometryConfig& c, const GeometryResul
   if (c.csv) {
     writers.emplace_back([&] { return io::write_geometry_csv(folder.path("geometry.csv"), g); });
     writers.emplace_back([&] { return io::write_geometry_columns_csv(folder.path("geometry_columns.csv"), g); });
+    if (const design::Alignment* a = r.axis ? &r.axis->alignment : r.design ? &*r.design : nullptr) {
+      writers.emplace_back([&folder, a] { return io::write_alignment_csv(folder.path("design_elements.csv"), *a); });
+    }
     if (r.at_sleepers) {
       writers.emplace_back([&] { return io::write_geometry_csv(folder.path("sleepers.csv"), *r.at_sleepers); });
     }
@@ -221,6 +226,7 @@ std::string geometry_summary_json(const GeometryResult& r) {
     out["quality"] = {
         {"limits", r.quality->profile}, {"source", r.quality->source}, {"speed_kmh", r.quality->speed / units::kmh},
         {"levels", r.quality->levels},  {"exceedances", levels},       {"unchecked", r.quality->unchecked}};
+    if (r.quality->tqi_limit > 0.0) out["quality"]["tqi_limit_mm"] = r.quality->tqi_limit;
     for (const track::Limit& limit : r.quality->applied) {
       const track::Column& c = g.at(limit.column);
       out["quality"]["limits_applied"].push_back({{"column", c.heading()},

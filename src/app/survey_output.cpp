@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "versine/app/landmark_residuals.hpp"
 #include "versine/app/version.hpp"
 #include "versine/core/units.hpp"
 #include "versine/io/write_trajectory.hpp"
@@ -157,6 +158,15 @@ Expected<SurveyRun> write_survey(const SurveyConfig& config, SurveyResult& resul
   if (config.output.innovations) {
     writers.emplace_back([&] {
       return io::write_innovations_csv(folder.path("innovations.csv"), solution.innovations, solution.smoothed.scale);
+    });
+  }
+  if (!result.input.landmarks.empty()) {
+    writers.emplace_back([&] {
+      const track::Geometry* geometry = result.geometry ? &result.geometry->geometry : nullptr;
+      return write_landmark_residuals(
+          folder.path("landmarks.csv"),
+          landmark_residuals(result.input.landmarks, solution, config.estimator.landmark_lever.l_b, geometry),
+          geometry);
     });
   }
   if (result.geometry) {

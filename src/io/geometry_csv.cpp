@@ -107,7 +107,7 @@ Expected<void> write_sections_csv(const std::filesystem::path& path, const track
   if (!q.sections.empty()) {
     for (const auto& [name, sigma] : q.sections.front().sigma) out.print(",sigma_{}", g.at(name).heading());
   }
-  out.text(",classes,over\n");
+  out.text(",classes,over,start_distance_m,end_distance_m\n");
   for (const track::Section& s : q.sections) {
     out.print("{:.2f},{:.2f},", g.posted_at(s.start), g.posted_at(s.end));
     out.number(1e3 * s.tqi, 3);
@@ -120,7 +120,7 @@ Expected<void> write_sections_csv(const std::filesystem::path& path, const track
     std::string classes, over;
     for (const auto& [name, k] : s.classes) classes += (classes.empty() ? "" : "; ") + name + " " + k;
     for (const auto& o : s.over) over += (over.empty() ? "" : "; ") + o;
-    out.print(",{},{}\n", field(classes), field(over));
+    out.print(",{},{},{:.2f},{:.2f}\n", field(classes), field(over), s.start, s.end);
   }
   return out.close();
 }

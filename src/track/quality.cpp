@@ -159,6 +159,7 @@ Expected<Quality> assess(const Geometry& g, const LimitProfile& profile, double 
                  .advice = "choose another profile or add a class to it"});
   }
   Quality out{.profile = profile.name, .source = profile.source, .speed = speed, .levels = profile.levels};
+  out.tqi_limit = it->tqi;
   std::map<std::string, ColumnLimits> by_column;
   for (const Limit& limit : it->limits) {
     bool found = false;

@@ -21,6 +21,7 @@ struct GeometryResult {
   std::optional<track::Geometry> at_sleepers;
   std::optional<track::Quality> quality;
   std::optional<track::Adjustment> slew, lift;
+  std::optional<design::Alignment> design;  ///< what deviations refer to, unless it is `axis`
   std::optional<design::OptimalAxis> axis;
   std::vector<io::RunInput> files;  ///< design, gauge, sleeper, limits
 };
