@@ -62,6 +62,8 @@ class PathFilter {
     for (std::size_t k = 0; k < n; ++k) {
       const Epoch& e = epochs_.epochs[k];
       if (k > 0) predict(e, e.step - epochs_.epochs[k - 1].step);
+      if (e.position) renew_colour(e);
+      out_.colour_kept.push_back(kept_);
       out_.predicted.push_back(x_);
       out_.predicted_covariance.push_back(P_);
       if (e.standing) scalar(0.0, 1e-4, speed_row(), true);
@@ -108,6 +110,7 @@ class PathFilter {
 
   void predict(const Epoch& e, std::int64_t steps) {
     const Motion& m = table_.steps(steps);
+    kept_ = m.decay;
     const Eigen::Vector3d x = m.F * x_.head<3>();
     x_.head<3>() = x;
     x_.head<2>() += e.input;
@@ -120,6 +123,32 @@ class PathFilter {
     P_(3, 3) = m.decay * m.decay * P_(3, 3) + 1.0 - m.decay * m.decay;
     across_ *= m.decay;
     across_variance_ = m.decay * m.decay * across_variance_ + 1.0 - m.decay * m.decay;
+  }
+
+  /// The correlated error goes on only as far as the receiver's own sigma does, and not where the fix jumps away from
+  /// the prediction: under a bridge another error begins. Both errors then start afresh, as large as the jump.
+  void renew_colour(const Epoch& e) {
+    if (last_sigma_ > 0.0 && e.sigma != last_sigma_) {
+      const double kept = std::min(e.sigma, last_sigma_) / std::max(e.sigma, last_sigma_);
+      keep_colour(kept, 1.0 - kept * kept);
+      across_ *= kept;
+      across_variance_ = kept * kept * across_variance_ + 1.0 - kept * kept;
+    }
+    last_sigma_ = e.sigma;
+    const Innovation i = innovation(e);
+    if (!(i.ra * i.ra / i.Sa + i.rc * i.rc / i.Sc > options_.gnss.jump) || gross(i, e)) return;
+    out_.log_likelihood -= 4.6;  // one fix in a hundred
+    keep_colour(0.0, std::max(1.0, i.along * i.along / (i.coloured * i.coloured)));
+    across_ = 0.0;
+    across_variance_ = std::max(1.0, i.across * i.across / (i.across_sigma * i.across_sigma));
+  }
+
+  void keep_colour(double kept, double added) {
+    kept_ *= kept;
+    x_[3] *= kept;
+    P_.topRightCorner<3, 1>() *= kept;
+    P_.bottomLeftCorner<1, 3>() *= kept;
+    P_(3, 3) = kept * kept * P_(3, 3) + added;
   }
 
   void correct(const Eigen::RowVector4d& H, double r, double R) {
@@ -143,28 +172,51 @@ class PathFilter {
     correct(H, r, R + S * (1.0 / w - 1.0));
   }
 
-  void position(const Epoch& e, std::size_t k) {
+  struct Innovation {
+    View v;
+    Eigen::RowVector4d H;
+    double along, across;  // of the fix from the predicted place, m
+    double ra, rc;         // without the correlated errors' predictions
+    double Sa, Sc;         // variances of these
+    double white, coloured, across_sigma;
+  };
+  [[nodiscard]] Innovation innovation(const Epoch& e) const {
     const auto& g = options_.gnss;
+    Innovation i;
     // Where the distance is not known well, the path is linearised at the fix's foot instead of the prediction.
     const double sigma_d = std::sqrt(P_(0, 0));
     const double at =
         sigma_d < 10.0 ? x_[0] : path_.project(*e.position, x_[0] - 4.0 * sigma_d, x_[0] + 4.0 * sigma_d).distance;
-    const View v = view(path_, at, std::min(sigma_d, 10.0), options_);
-    const Eigen::Vector2d r = *e.position - v.point + v.along * (v.slope * (at - x_[0]));
-    const double along = v.along.dot(r), across = v.across.dot(r);
-    const double variance = e.sigma * e.sigma, coloured = std::sqrt(g.correlated) * e.sigma;
-    const double white = (1.0 - g.correlated) * variance;
-    const Eigen::RowVector4d H(v.slope, 0, 0, coloured);
-    const double Sa = (H * P_ * H.transpose())(0) + white;
+    i.v = view(path_, at, std::min(sigma_d, 10.0), options_);
+    const Eigen::Vector2d r = *e.position - i.v.point + i.v.along * (i.v.slope * (at - x_[0]));
+    i.along = i.v.along.dot(r), i.across = i.v.across.dot(r);
+    i.coloured = std::sqrt(g.correlated) * e.sigma;
+    i.white = (1.0 - g.correlated) * e.sigma * e.sigma;
+    i.H << i.v.slope, 0, 0, i.coloured;
+    i.Sa = (i.H * P_ * i.H.transpose())(0) + i.white;
     // Across the track the map's own error comes on top; both change slowly.
-    const double across_sigma = std::hypot(coloured, g.map_sigma);
-    const double Sc = across_sigma * across_sigma * across_variance_ + white + 1e-4;
-    const double ra = along - coloured * x_[3], rc = across - across_sigma * across_;
+    i.across_sigma = std::hypot(i.coloured, g.map_sigma);
+    i.Sc = i.across_sigma * i.across_sigma * across_variance_ + i.white + 1e-4;
+    i.ra = i.along - i.coloured * x_[3], i.rc = i.across - i.across_sigma * across_;
+    return i;
+  }
+
+  /// So far off that the receiver's sigma means nothing.
+  [[nodiscard]] bool gross(const Innovation& i, const Epoch& e) const {
+    const double variance = e.sigma * e.sigma, map = options_.gnss.map_sigma;
+    return i.along * i.along / (variance + P_(0, 0)) + i.across * i.across / (variance + map * map) >
+           options_.gnss.gate;
+  }
+
+  void position(const Epoch& e, std::size_t k) {
+    const auto& g = options_.gnss;
+    const Innovation i = innovation(e);
+    const auto& [v, H, along, across, ra, rc, Sa, Sc, white, coloured, across_sigma] = innovation(e);
     const double nis = ra * ra / Sa + rc * rc / Sc;
 
     const std::size_t index = out_.residuals.size();
     double w = std::min(1.0, (g.nu + 2.0) / (g.nu + nis));
-    bool gated = nis > g.gate;
+    bool gated = gross(i, e);
     if (!weights_.empty()) w = weights_[index], gated = !(w > 0.02);
     out_.log_likelihood += std::lgamma(0.5 * (g.nu + 2.0)) - std::lgamma(0.5 * g.nu) -
                            std::log(g.nu * std::numbers::pi) - 0.5 * std::log(Sa * Sc) -
@@ -178,7 +230,7 @@ class PathFilter {
     out_.residuals.push_back({e.fix, k, float(ra), float(rc), float(std::sqrt(Sa)), float(std::sqrt(Sc)), float(nis),
                               gated ? 0.0F : float(w)});
     if (gated) return;
-    correct(H, ra, white + variance * (1.0 / w - 1.0));
+    correct(H, ra, white + e.sigma * e.sigma * (1.0 / w - 1.0));
     const double R = white + 1e-4 + across_sigma * across_sigma * (1.0 / w - 1.0);
     const double gain = across_variance_ * across_sigma / (across_sigma * across_sigma * across_variance_ + R);
     across_ += gain * rc;
@@ -207,6 +259,8 @@ class PathFilter {
   State4 x_ = State4::Zero();
   Covariance4 P_ = Covariance4::Identity();
   double across_ = 0.0, across_variance_ = 1.0;  // correlated error across, in units of its sigma
+  double kept_ = 1.0;                            // share of the correlated error that goes on from the epoch before
+  double last_sigma_ = 0.0;                      // of the fix before
   int astray_ = 0;
   Filtered out_;
 };

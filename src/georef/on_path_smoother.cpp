@@ -73,7 +73,7 @@ Smoothed smooth(const Epochs& epochs, const Filtered& filtered) {
     const Motion& m = table.steps(epochs.epochs[k + 1].step - epochs.epochs[k].step);
     Eigen::Matrix4d PF;  // P F^T
     PF.leftCols<3>() = P.leftCols<3>() * m.F.transpose();
-    PF.col(3) = m.decay * P.col(3);
+    PF.col(3) = filtered.colour_kept[k + 1] * P.col(3);
     const Eigen::Matrix4d A = next.ldlt().solve(PF.transpose()).transpose();
     out.state[k] += A * (out.state[k + 1] - filtered.predicted[k + 1]);
     out.covariance[k] += A * (out.covariance[k + 1] - next) * A.transpose();

@@ -60,6 +60,7 @@ using Covariance4 = Eigen::Matrix4d;
 struct Filtered {
   std::vector<State4> predicted, updated;
   std::vector<Covariance4> predicted_covariance, updated_covariance;
+  std::vector<double> colour_kept;  ///< share of the correlated GNSS error that went on from the epoch before
   std::vector<FixResidual> residuals;
   double log_likelihood = 0.0;
 };

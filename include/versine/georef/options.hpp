@@ -17,6 +17,7 @@ struct GnssModel {
   double correlated = 0.8;       ///< share of the sigma that is correlated in time
   double correlation_time = 15;  ///< s
   double nu = 4.0;               ///< degrees of freedom of Student's t for innovations
+  double jump = 16.0;            ///< normalised innovation squared beyond which the correlated error began afresh
   double gate = 60.0;            ///< normalised innovation squared beyond which a fix is left out
   double map_sigma = 0.7;        ///< m, lateral error of the map
   double speed_scale = 2.0;      ///< speeds' sigmas times this
