@@ -102,10 +102,19 @@ Expected<StaticStart> static_start(const sensors::ImuSeries& imu, const Series<s
     }
   }
   start.q_nb = geodesy::to_quaternion(e);
+  start.mean_rate = rate;
+  start.latitude = place.latitude;
   start.rate_bias = rate - start.q_nb.conjugate() * earth_rate_n(place.latitude);
   start.pitch_sigma = options.pitch_sigma;
   start.roll_sigma = options.levelling_sigma;
   start.bias_sigma = remaining_bias(options, start.duration);
+  return start;
+}
+
+StaticStart with_heading(StaticStart start, double heading, double sigma) {
+  start.q_nb = Eigen::Quaterniond(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ())) * start.q_nb;
+  start.heading_sigma = sigma;
+  if (start.duration > 0.0) start.rate_bias = start.mean_rate - start.q_nb.conjugate() * earth_rate_n(start.latitude);
   return start;
 }
 

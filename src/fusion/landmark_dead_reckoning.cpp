@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "versine/fusion/landmark_output.hpp"
@@ -137,6 +138,7 @@ std::vector<RollTie> roll_ties(const sensors::ImuSeries& imu, const sensors::Lan
 /// The state of the iteration: how the nominal path lies.
 struct Placement {
   double heading = 0.0, scale = 0.0;
+  double heading_sigma = 0.0;  ///< rad, at the start, as the landmarks leave it
   std::vector<Tie> ties;
   std::vector<Fit> fits;
   std::vector<Stretch> stretches;
@@ -169,7 +171,7 @@ Tie make_tie(const sensors::LandmarkSample& l, std::size_t index, std::size_t k,
 
 Placement place(Reckoning& r, const LandmarkInput& in, const std::vector<std::size_t>& usable, const StaticStart& start,
                 const Prior& prior, const DrivingNoise& noise, std::span<const filter::SmoothedEpoch<roll::size>> roll,
-                const LandmarkOptions& o) {
+                double turned, const LandmarkOptions& o) {
   std::vector<std::size_t> at(usable.size());
   for (std::size_t i = 0; i < usable.size(); ++i) at[i] = node_at(r.nodes, (*in.landmarks)[usable[i]].time);
   ModelErrors errors{.mounting = o.mounting_sigma,
@@ -196,10 +198,11 @@ Placement place(Reckoning& r, const LandmarkInput& in, const std::vector<std::si
     }
     p.stretches = judge_stretches(r.nodes, at, errors);
     p.channels = build_channels(r.nodes, p.stretches, prior, noise);
-    p.channels.level_start.mean(level::heading) = -p.heading;
+    p.channels.level_start.mean(level::heading) = -p.heading - turned;
     p.channels.level_start.mean(level::scale) = -p.scale;
     p.fits = snoop(p.channels, p.ties, o.gate);
     const AtTies smoothed = smooth_at_ties(p.channels, p.ties, p.fits);
+    p.heading_sigma = std::sqrt(smoothed.level_start.covariance(level::heading, level::heading));
     const double turn = smoothed.level_start.mean(level::heading), stretch = smoothed.level_start.mean(level::scale);
     for (std::size_t i = 0; i < usable.size(); ++i) pitch[i] = smoothed.vertical[i].estimate.mean(vertical::pitch);
     if (std::abs(turn) < settled_heading && std::abs(stretch) < settled_heading && round > 0) break;
@@ -210,6 +213,41 @@ Placement place(Reckoning& r, const LandmarkInput& in, const std::vector<std::si
     while (anchor + 1 < p.fits.size() && !p.fits[anchor].used) ++anchor;
   }
   return p;
+}
+
+/// Dead reckoning, roll and placement from one start.
+struct Pass {
+  Reckoning reckoning;
+  std::vector<filter::SmoothedEpoch<roll::size>> roll;
+  Placement placed;
+};
+
+/// `turned`: what earlier passes have added to the heading of the alignment.
+Expected<Pass> run_pass(const LandmarkInput& in, const std::vector<std::size_t>& usable, const StaticStart& start,
+                        const Prior& prior, const DrivingNoise& noise, double turned, const LandmarkOptions& o,
+                        Progress& progress) {
+  std::vector<Time> stops;
+  for (const std::size_t i : usable) stops.push_back((*in.landmarks)[i].time);
+  auto reckoning = reckon(*in.imu, *in.odometer, start, (*in.landmarks)[0].position, stops, o, progress);
+  if (!reckoning) return tl::unexpected(reckoning.error());
+  progress.report("landmarks", 0.0);
+  std::vector<RollTie> ties;
+  for (const std::size_t i : usable) {
+    const auto& l = (*in.landmarks)[i];
+    const std::size_t k = node_at(reckoning->nodes, l.time);
+    const auto more = roll_ties(*in.imu, l, reckoning->nodes[k], k, o);
+    if (k > 0) ties.insert(ties.end(), more.begin(), more.end());
+  }
+  Pass pass{.reckoning = std::move(*reckoning)};
+  pass.roll = smooth_roll(pass.reckoning.nodes, prior, noise, ties, o.smoother);
+  pass.placed = place(pass.reckoning, in, usable, start, prior, noise, pass.roll, turned, o);
+  return pass;
+}
+
+/// Whether the track turns enough for an error of the aligned heading to change the equivalent biases.
+bool turns(const std::vector<Stretch>& stretches) {
+  constexpr double enough = 0.02;  // rad
+  return std::any_of(stretches.begin(), stretches.end(), [&](const Stretch& s) { return s.heading_range > enough; });
 }
 
 Expected<void> report_landmarks(const LandmarkInput& in, const Placement& p, const LandmarkOptions& o,
@@ -268,7 +306,7 @@ Expected<LandmarkSolution> run_landmark_dead_reckoning(const LandmarkInput& inpu
                                                        Progress& progress) {
   if (auto ok = check(input, options); !ok) return tl::unexpected(ok.error());
   const geodesy::Geodetic place_at = (*input.landmarks)[0].position;
-  const auto start = static_start(*input.imu, *input.odometer, place_at, options);
+  auto start = static_start(*input.imu, *input.odometer, place_at, options);
   if (!start) return tl::unexpected(start.error());
 
   LandmarkSolution result;
@@ -276,11 +314,6 @@ Expected<LandmarkSolution> run_landmark_dead_reckoning(const LandmarkInput& inpu
   const Time begin = (*input.imu)[start->sample].time;
   const auto usable = usable_landmarks(input, options, begin, record);
   if (!usable) return tl::unexpected(usable.error());
-  std::vector<Time> stops;
-  for (const std::size_t i : *usable) stops.push_back((*input.landmarks)[i].time);
-  auto reckoning = reckon(*input.imu, *input.odometer, *start, place_at, stops, options, progress);
-  if (!reckoning) return tl::unexpected(reckoning.error());
-
   const Prior prior{.position = position_prior,
                     .scale = options.scale_sigma,
                     .pitch = start->pitch_sigma,
@@ -294,24 +327,25 @@ Expected<LandmarkSolution> run_landmark_dead_reckoning(const LandmarkInput& inpu
       .scale_walk = options.scale_walk,
       .path_walk = options.path_walk,
       .distance_walk = options.distance_walk};
-  progress.report("landmarks", 0.0);
-  std::vector<RollTie> rolls;
-  for (const std::size_t i : *usable) {
-    const auto& l = (*input.landmarks)[i];
-    const std::size_t k = node_at(reckoning->nodes, l.time);
-    const auto more = roll_ties(*input.imu, l, reckoning->nodes[k], k, options);
-    if (k > 0) rolls.insert(rolls.end(), more.begin(), more.end());
+  auto pass = run_pass(input, *usable, *start, prior, noise, 0.0, options, progress);
+  if (!pass) return tl::unexpected(pass.error());
+  if (turns(pass->placed.stretches)) {
+    const double found = pass->placed.heading;
+    *start = with_heading(*start, found, pass->placed.heading_sigma);
+    pass = run_pass(input, *usable, *start, prior, noise, found, options, progress);
+    if (!pass) return tl::unexpected(pass.error());
+    result.heading_correction = found;
   }
-  auto roll = smooth_roll(reckoning->nodes, prior, noise, rolls, options.smoother);
-  const Placement placed = place(*reckoning, input, *usable, *start, prior, noise, roll, options);
+  auto& reckoning = pass->reckoning;
+  const Placement& placed = pass->placed;
   if (auto ok = report_landmarks(input, placed, options, record); !ok) return tl::unexpected(ok.error());
   progress.report("smoothing", 0.0);
-  const Smoothed smoothed = smooth(placed.channels, placed.ties, placed.fits, std::move(roll), options.smoother);
+  const Smoothed smoothed = smooth(placed.channels, placed.ties, placed.fits, std::move(pass->roll), options.smoother);
   if (progress.cancelled()) return fail({.found = "cancelled"});
 
-  result.observability = observability_of(reckoning->nodes, placed.channels, placed.ties, placed.fits, prior, smoothed);
+  result.observability = observability_of(reckoning.nodes, placed.channels, placed.ties, placed.fits, prior, smoothed);
   result.stretches = placed.stretches;
-  result.heading_correction = placed.heading;
+  result.heading_correction += placed.heading;
   warn_model(placed.stretches, options, record);
   for (std::size_t i = 0; i < placed.ties.size(); ++i) {
     const auto& l = (*input.landmarks)[placed.ties[i].landmark];
@@ -328,12 +362,12 @@ Expected<LandmarkSolution> run_landmark_dead_reckoning(const LandmarkInput& inpu
   Solution& solution = result.solution;
   solution.error_names = sensor_error_names();
   const Eigen::Vector3d bias_v = geodesy::to_matrix(options.mounting) * start->rate_bias;
-  solution.sensor_errors = sensor_errors(reckoning->nodes, smoothed, bias_v, placed.scale, 1.0);
+  solution.sensor_errors = sensor_errors(reckoning.nodes, smoothed, bias_v, placed.scale, 1.0);
   if (options.chain_interval > 0.0) {
-    solution.chain = error_chain(reckoning->nodes, smoothed, placed.heading, options.chain_interval);
+    solution.chain = error_chain(reckoning.nodes, smoothed, placed.heading, options.chain_interval);
   }
   progress.report("trajectory", 0.0);
-  solution.smoothed = corrected_trajectory(std::move(*reckoning), smoothed, placed.heading, placed.scale, options);
+  solution.smoothed = corrected_trajectory(std::move(reckoning), smoothed, placed.heading, placed.scale, options);
   solution.smoothed.scale = input.imu->scale;
   progress.report("trajectory", 1.0);
   return result;

@@ -42,7 +42,15 @@ geodesy::Covariance3 unpack(const Eigen::Array<float, 18, 1>& from, int at) {
   return {from[at], from[at + 1], from[at + 2], from[at + 3], from[at + 4], from[at + 5]};
 }
 
-NodeOutput node_output(const Node& node, const Smoothed& s, std::size_t k, double heading, double scale, double speed) {
+/// What an error of level or mounting does to a lever arm (v-frame), the same throughout the run: covariance, v-frame.
+Eigen::Matrix3d lever_covariance(const LandmarkOptions& o) {
+  const Eigen::Vector3d l = geodesy::to_matrix(o.mounting) * o.lever_landmark;
+  const double variance = o.mounting_sigma * o.mounting_sigma + o.levelling_sigma * o.levelling_sigma;
+  return variance * (l.squaredNorm() * Eigen::Matrix3d::Identity() - l * l.transpose());
+}
+
+NodeOutput node_output(const Node& node, const Smoothed& s, std::size_t k, double heading, double scale, double speed,
+                       const Eigen::Matrix3d& lever) {
   const auto& v = s.vertical[k].estimate;
   const auto& l = s.level[k].estimate;
   const auto& r = s.roll[k].estimate;
@@ -58,6 +66,8 @@ NodeOutput node_output(const Node& node, const Smoothed& s, std::size_t k, doubl
   Eigen::Matrix3d P = Eigen::Matrix3d::Zero();
   P.topLeftCorner<2, 2>() = l.covariance.topLeftCorner<2, 2>();
   P(2, 2) = v.covariance(0, 0);
+  const Eigen::Matrix3d C_nv(Eigen::AngleAxisd(psi, Eigen::Vector3d::UnitZ()));
+  P += C_nv * lever * C_nv.transpose();
   pack(o.covariance, 0, P);
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
   const Eigen::Vector2d tilt_variance(r.covariance(roll::angle, roll::angle),
@@ -127,13 +137,14 @@ geodesy::Trajectory corrected_trajectory(Reckoning reckoning, const Smoothed& sm
   const Eigen::Vector3d lever = q_vb * options.lever_odometer;
   const bool has_lever = options.lever_odometer.squaredNorm() > 0.0;
   const Eigen::Matrix2d turn = (1.0 - scale) * to_north_east(heading);
+  const Eigen::Matrix3d shared = lever_covariance(options);
   geodesy::Trajectory result;
   result.origin = "landmark dead reckoning, smoothed";
-  NodeOutput a = node_output(nodes[0], smoothed, 0, heading, scale, node_speed(nodes, 0));
+  NodeOutput a = node_output(nodes[0], smoothed, 0, heading, scale, node_speed(nodes, 0), shared);
   std::size_t i = 0;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const std::size_t base = k == 0 ? 0 : k - 1;
-    const NodeOutput b = k == 0 ? a : node_output(nodes[k], smoothed, k, heading, scale, node_speed(nodes, k));
+    const NodeOutput b = k == 0 ? a : node_output(nodes[k], smoothed, k, heading, scale, node_speed(nodes, k), shared);
     const geodesy::Geodetic& from = nodes[base].position;
     const double north = 1.0 / (geodesy::wgs84.meridian_radius(from.latitude) + from.height);
     const double east =

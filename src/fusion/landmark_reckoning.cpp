@@ -90,16 +90,16 @@ Expected<Reckoning> reckon(const sensors::ImuSeries& imu, const Series<sensors::
   const std::int64_t nominal = imu.interval.ns > 0 ? imu.interval.ns : (imu[1].time - imu[0].time).ns;
 
   Reckoning result;
-  result.points.resize(n - start.sample);
-  result.moved.resize(n - start.sample, Eigen::Vector3f::Zero());
+  result.points.reserve(n - start.sample);
+  result.moved.reserve(n - start.sample);
   Eigen::Quaterniond q = start.q_nb * q_vb.conjugate();
   DistanceAt distance_at(odometer);
   double s = distance_at(imu[start.sample].time);
   Eigen::Vector3d f = forward(q), last_dtheta = Eigen::Vector3d::Zero();
   Node node{.time = imu[start.sample].time, .q_nv = q};
   result.nodes.push_back(node);
-  result.points[0].time = node.time;
-  result.points[0].q_nb = q;
+  result.points.push_back({.time = node.time, .q_nb = q});
+  result.moved.emplace_back(Eigen::Vector3f::Zero());
   std::size_t stop = 0;
   while (stop < stops.size() && stops[stop].ns <= node.time.ns + nominal / 2) ++stop;
   Time node_start = node.time;
@@ -127,10 +127,8 @@ Expected<Reckoning> reckon(const sensors::ImuSeries& imu, const Series<sensors::
     node.distance += ds;
     node.distance_moment += tau * ds;
 
-    auto& point = result.points[i - start.sample];
-    point.time = sample.time;
-    point.q_nb = q;
-    result.moved[i - start.sample] = node.moved.cast<float>();
+    result.points.push_back({.time = sample.time, .q_nb = q});
+    result.moved.emplace_back(node.moved.cast<float>());
 
     const bool at_stop = stop < stops.size() && stops[stop].ns <= sample.time.ns + nominal / 2;
     if (!at_stop && sample.time.ns - node_start.ns < interval && i + 1 < n) continue;

@@ -53,6 +53,7 @@ void measure(std::span<const Node> nodes, Stretch& s) {
   s.cant_range = cant.width();
   s.heading_range = heading.width();
   s.heading_rate_range = rate.width();
+  s.heading_rate = rate.high >= rate.low ? std::max(std::abs(rate.low), std::abs(rate.high)) : 0.0;
 }
 
 void judge(Stretch& s, const ModelErrors& e) {
@@ -62,8 +63,9 @@ void judge(Stretch& s, const ModelErrors& e) {
   // Jiang eq. 12: mounting angles turn with the cant. Scale factor and misalignment of the gyros act on the turn.
   const double pitch = std::hypot(e.mounting * G, e.gyro_misalignment * H);
   const double heading = std::hypot(e.mounting * G, e.gyro_scale * H, e.gyro_misalignment * G);
-  // Jiang eq. 6: what a turn changes in the equivalent biases.
-  const double lateral_bias = std::hypot(north * e.heading * H, e.level * s.heading_rate_range, e.bias * G);
+  // Jiang eq. 6: what a turn changes in the equivalent biases. Level errors stay in n while the trolley turns (eq. 4).
+  const double lateral_bias = std::hypot(
+      north * e.heading * H, std::hypot(e.level * s.heading_rate_range, e.level * s.heading_rate * H), e.bias * G);
   const double vertical_bias = std::hypot(north * e.level * H, e.bias * G);
   const double root = std::sqrt(s.length);
   s.noise = {pitch / root, heading / root, lateral_bias / root, vertical_bias / root};

@@ -44,7 +44,7 @@ struct LandmarkOptions {
   double gate = 4.0;                   ///< largest normalised residual of a landmark that is used
   double standing_tolerance = 2e-3;    ///< m the odometer may show while the trolley stands
   bool skip_moving_landmarks = false;  ///< leave out a landmark taken in motion; otherwise it is an error
-  double node_interval = 0.2;          ///< s between epochs of the filters; landmarks have their own
+  double node_interval = 0.5;          ///< s between epochs of the filters; landmarks have their own
   double chain_interval = 1.0;         ///< s between epochs of Solution::chain; 0: no chain
   double model_error_limit = 0.3e-3;   ///< m; where the reduced model may be off by more, the run warns
 };

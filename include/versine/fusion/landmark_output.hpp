@@ -12,8 +12,9 @@ namespace versine::fusion::landmark {
 [[nodiscard]] geodesy::Trajectory corrected_trajectory(Reckoning reckoning, const Smoothed& smoothed, double heading,
                                                        double scale, const LandmarkOptions& options);
 
-/// The joint distribution of errors every `interval` seconds: position, attitude, odometer scale, equivalent gyro
-/// biases x y z, levelling.
+/// The joint distribution of errors of the odometer's point (without what level and mounting do to the landmark's lever
+/// arm, which shifts the whole run and no versine) every `interval` seconds: position, attitude, odometer scale,
+/// equivalent gyro biases x y z, levelling.
 [[nodiscard]] filter::ErrorChain error_chain(std::span<const Node> nodes, const Smoothed& smoothed, double heading,
                                              double interval);
 

@@ -28,6 +28,7 @@ struct Stretch {
   double duration = 0.0;            ///< s
   double cant_range = 0.0;          ///< rad: largest minus smallest roll
   double heading_range = 0.0;       ///< rad
+  double heading_rate = 0.0;        ///< rad/s: largest magnitude
   double heading_rate_range = 0.0;  ///< rad/s
   double model_error = 0.0;         ///< m: sigma of lateral or vertical position by what the model leaves out
   ModelNoise noise;                 ///< that error as noise for the channels
