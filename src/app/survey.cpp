@@ -3,9 +3,9 @@
 
 #include <chrono>
 
+#include "versine/app/survey_landmark.hpp"
 #include "versine/app/survey_output.hpp"
 #include "versine/app/withhold.hpp"
-#include "versine/fusion/landmark_dead_reckoning.hpp"
 
 namespace versine::app {
 
@@ -41,31 +41,6 @@ fusion::AidedInsInput estimator_input(SurveyInput& input) {
   return out;
 }
 
-/// `method = "landmark"`: the same job through landmark dead reckoning.
-Expected<fusion::AidedInsResult> solve_by_landmarks(const fusion::AidedInsInput& input,
-                                                    const fusion::AidedInsOptions& o, Progress& progress) {
-  fusion::LandmarkOptions options;
-  options.gyro = o.imu_errors.gyro;
-  options.alignment_duration = o.alignment_duration;
-  if (o.initial_heading) {
-    options.heading = *o.initial_heading + o.mounting.yaw;
-    options.heading_sigma = o.initial_heading_sigma;
-  }
-  options.scale_sigma = o.odometer_scale_sigma;
-  options.distance_walk = o.odometer_random_walk;
-  options.mounting = o.mounting;
-  if (o.mounting_sigma > 0.0) options.mounting_sigma = o.mounting_sigma;
-  options.lever_odometer = o.wheel_lever.l_b;
-  options.lever_landmark = o.landmark_lever.l_b;
-  options.chain_interval = o.chain_rate > 0.0 ? 1.0 / o.chain_rate : 0.0;
-  auto solved = fusion::run_landmark_dead_reckoning(
-      {.imu = &input.imu, .odometer = &input.odometer, .landmarks = &input.landmarks}, options, progress);
-  if (!solved) return tl::unexpected(solved.error());
-  fusion::AidedInsResult result;
-  result.solution = std::move(solved->solution);
-  return result;
-}
-
 }  // namespace
 
 Expected<SurveyResult> compute_survey(const SurveyConfig& config, const std::filesystem::path& job, Progress& progress,
@@ -80,7 +55,7 @@ Expected<SurveyResult> compute_survey(const SurveyConfig& config, const std::fil
   Series<sensors::GnssSample> hidden;
   if (config.withhold.window > 0.0) hidden = withhold(estimator.gnss, config.withhold);
   auto solved = config.method == SurveyMethod::landmark
-                    ? solve_by_landmarks(estimator, config.estimator, progress)
+                    ? solve_by_landmarks(estimator, config.estimator, config.landmark_method, progress)
                     : fusion::run_aided_ins(estimator, config.estimator, progress, log);
   if (!solved) return tl::unexpected(solved.error());
   if (!hidden.empty()) {

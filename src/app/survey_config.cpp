@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "versine/app/survey_landmark.hpp"
 #include "versine/core/units.hpp"
 
 namespace versine::app {
@@ -234,6 +235,8 @@ void describe(ConfigVisitor& v, SurveyConfig& c) {
           });
   v.table("alignment", "Initial attitude and position.", [&](ConfigVisitor& t) { describe_alignment(t, c); });
   v.table("filter", "The estimator.", [&](ConfigVisitor& t) { describe_filter(t, c.estimator); });
+  v.table("landmark_method", "What method = \"landmark\" wants to know besides (docs/planning.md).",
+          [&](ConfigVisitor& t) { describe(t, c.landmark_method); });
   v.table("withhold", "Leaves GNSS out in windows and compares with it: how good is the solution in outages?",
           [&](ConfigVisitor& t) {
             t.value("window_s", c.withhold.window, seconds("Length of a window; 0: nothing is withheld."));

@@ -42,11 +42,13 @@ geodesy::Covariance3 unpack(const Eigen::Array<float, 18, 1>& from, int at) {
   return {from[at], from[at + 1], from[at + 2], from[at + 3], from[at + 4], from[at + 5]};
 }
 
-/// What an error of level or mounting does to a lever arm (v-frame), the same throughout the run: covariance, v-frame.
+/// What errors of level and mounting, the same throughout the run, do to the landmark's lever arm: covariance, v-frame.
+/// Roll comes from the accelerometers; pitch and heading of the IMU are those of the way it travels, seen through the
+/// mounting.
 Eigen::Matrix3d lever_covariance(const LandmarkOptions& o) {
-  const Eigen::Vector3d l = geodesy::to_matrix(o.mounting) * o.lever_landmark;
-  const double variance = o.mounting_sigma * o.mounting_sigma + o.levelling_sigma * o.levelling_sigma;
-  return variance * (l.squaredNorm() * Eigen::Matrix3d::Identity() - l * l.transpose());
+  const Eigen::Vector3d sigma(o.levelling_sigma, o.mounting_sigma, o.mounting_sigma);
+  const Eigen::Matrix3d shift = geodesy::skew(geodesy::to_matrix(o.mounting) * o.lever_landmark) * sigma.asDiagonal();
+  return shift * shift.transpose();
 }
 
 NodeOutput node_output(const Node& node, const Smoothed& s, std::size_t k, double heading, double scale, double speed,
@@ -141,7 +143,9 @@ geodesy::Trajectory corrected_trajectory(Reckoning reckoning, const Smoothed& sm
   geodesy::Trajectory result;
   result.origin = "landmark dead reckoning, smoothed";
   NodeOutput a = node_output(nodes[0], smoothed, 0, heading, scale, node_speed(nodes, 0), shared);
-  std::size_t i = 0;
+  const std::int64_t spacing = options.output_rate > 0.0 ? Duration::from_seconds(1.0 / options.output_rate).ns : 0;
+  std::int64_t next = nodes.front().time.ns;  // when the next point is due
+  std::size_t i = 0, kept = 0;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const std::size_t base = k == 0 ? 0 : k - 1;
     const NodeOutput b = k == 0 ? a : node_output(nodes[k], smoothed, k, heading, scale, node_speed(nodes, k), shared);
@@ -153,7 +157,10 @@ geodesy::Trajectory corrected_trajectory(Reckoning reckoning, const Smoothed& sm
     const Eigen::Array<double, 8, 1> slope = b.correction - a.correction;
     const Eigen::Array<float, 18, 1> covariance_slope = b.covariance - a.covariance;
     for (; i <= nodes[k].sample; ++i) {
-      auto& p = reckoning.points[i];
+      if (reckoning.points[i].time.ns < next) continue;
+      if (spacing > 0) next += spacing * ((reckoning.points[i].time.ns - next) / spacing + 1);
+      auto& p = reckoning.points[kept++];
+      p = reckoning.points[i];
       const double u = per_ns * static_cast<double>((p.time - nodes[base].time).ns);
       const Eigen::Array<double, 8, 1> c = a.correction + u * slope;
       const Eigen::Vector3d raw = reckoning.moved[i].cast<double>();
@@ -175,7 +182,7 @@ geodesy::Trajectory corrected_trajectory(Reckoning reckoning, const Smoothed& sm
     }
     a = b;
   }
-  reckoning.points.resize(i);
+  reckoning.points.resize(kept);
   result.samples = std::move(reckoning.points);
   return result;
 }

@@ -5,11 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "versine/core/units.hpp"
 #include "versine/fusion/planning.hpp"
 #include "versine/geodesy/ellipsoid.hpp"
+#include "versine/simulation/simulate.hpp"
 #include "versine/simulation/straight_run.hpp"
 
 namespace versine::fusion {
@@ -146,6 +149,83 @@ TEST(LandmarkDeadReckoning, OutlierIsFoundAndMissedLandmarkBridged) {
             .norm());
   }
   EXPECT_LT(worst, 2e-5);
+}
+
+TEST(LandmarkDeadReckoning, OutputRateThinsTheTrajectoryAndChangesNothingElse) {
+  const auto r = simulate_straight(survey({60, 60}), 5);
+  auto o = options();
+  const auto all = run(r, o);
+  o.output_rate = 10.0;
+  const auto thin = run(r, o);
+  ASSERT_TRUE(all && thin);
+  ASSERT_NEAR(double(thin->solution.smoothed.size()), double(all->solution.smoothed.size()) / 10.0, 1.0);
+  const auto& p = thin->solution.smoothed[300];
+  const auto& q = all->solution.smoothed[3000];
+  EXPECT_EQ(p.time, q.time);
+  EXPECT_EQ(p.position, q.position);
+}
+
+TEST(LandmarkDeadReckoning, TurningTrackKeepsItsPromise) {
+  // R = 150 m with cant, landmark every 60 m, rough track, by the general simulator: the model's own error is small and
+  // the sigmas cover the errors; a quarter circle between landmarks draws a warning.
+  simulation::Scenario s;
+  s.track.alignment.crs = "+proj=tmerc +lat_0=0 +lon_0=9 +k=1 +x_0=500000 +ellps=GRS80 +units=m";
+  s.track.height = 400.0;
+  const double straight = std::numeric_limits<double>::infinity();
+  s.track.alignment.horizontal = *design::HorizontalAxis::chain(
+      {500000.0, 5250000.0, 0.5},
+      {design::line(150.0), design::transition(design::Shape::clothoid, 80.0, straight, 150.0),
+       design::arc(200.0, 150.0), design::transition(design::Shape::clothoid, 80.0, 150.0, straight),
+       design::line(200.0)});
+  s.track.alignment.cant = *design::CantProfile::from_points(
+      {{.distance = 150.0}, {.distance = 230.0, .cant = 0.15}, {.distance = 430.0, .cant = 0.15}, {.distance = 510.0}});
+  s.track.spectrum = simulation::Spectrum::german_low;
+  s.motion.start = 20.0;
+  s.motion.stand = 400.0;
+  simulation::ImuModel imu;
+  imu.rate = 100.0;
+  imu.errors = sensors::find_imu_grade("rlg-jiang")->errors;
+  s.equipment.imu = imu;
+  s.equipment.odometers.push_back({.quantum = 0.1 * mm, .scale = 1e-3});
+  auto o = options();
+  o.gyro = imu.errors.gyro;
+  o.lever_odometer = {0.0, s.trolley.reference_y, s.trolley.contact_z};
+  o.odometer_resolution = 0.1 * mm;
+  o.path_walk = 0.02 * mm;
+  o.mounting_sigma = 0.05e-3;
+  for (const double spacing : {60.0, 240.0}) {
+    s.equipment.total_station = simulation::TotalStationModel{.every = spacing};
+    o.lever_landmark = s.equipment.total_station->place;
+    s.motion.legs = {{.to = 680.0, .speed = 1.0, .stop = 20.0, .stop_every = spacing, .stop_each = 20.0}};
+    const auto r = simulation::simulate(s, 3);
+    ASSERT_TRUE(r) << r.error().message();
+    Series<sensors::LandmarkSample> landmarks;
+    landmarks.samples = r->landmarks;
+    SilentProgress silent;
+    const auto solved = run_landmark_dead_reckoning({&r->imu, &r->odometers[0], &landmarks}, o, silent);
+    ASSERT_TRUE(solved) << solved.error().message();
+    const bool warned = std::any_of(solved->solution.record.warnings.begin(), solved->solution.record.warnings.end(),
+                                    [](const auto& w) { return w.find("reduced model") != std::string::npos; });
+    EXPECT_EQ(warned, spacing > 100.0);
+    EXPECT_TRUE(solved->solution.record.rejections.empty());
+    double squares = 0.0, normalised = 0.0, count = 0.0;
+    for (std::size_t i = 0; i < r->truth.trajectory.size(); i += 20) {
+      const auto& truth = r->truth.trajectory[i];
+      const std::size_t k = solved->solution.smoothed.lower_bound(truth.time);
+      if (k == 0 || k >= solved->solution.smoothed.size() || r->truth.progress[i].speed == 0.0) continue;
+      const auto &a = solved->solution.smoothed[k - 1], &b = solved->solution.smoothed[k];
+      const double u = (truth.time - a.time).seconds() / (b.time - a.time).seconds();
+      const Eigen::Vector3d e = (1 - u) * geodesy::wgs84.ned_difference(truth.position, a.position) +
+                                u * geodesy::wgs84.ned_difference(truth.position, b.position);
+      squares += e.squaredNorm();
+      normalised += e.dot(a.position_covariance.matrix().llt().solve(e));
+      ++count;
+    }
+    if (spacing < 100.0) {
+      EXPECT_LT(std::sqrt(squares / count / 3.0), 0.7 * mm);
+    }
+    EXPECT_LT(normalised / count, 8.0);  // one run: neighbouring errors are alike
+  }
 }
 
 TEST(LandmarkDeadReckoning, ErrorChainSharesWhatNeighboursShare) {

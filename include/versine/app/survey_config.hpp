@@ -9,6 +9,7 @@
 #include "versine/app/recording_config.hpp"
 #include "versine/app/stationing.hpp"
 #include "versine/fusion/aided_ins.hpp"
+#include "versine/fusion/landmark_options.hpp"
 
 /// What a survey job says: `[imu]`, `[gnss]`, ... as in docs/job-survey.md, which is made from `describe`.
 namespace versine::app {
@@ -41,6 +42,7 @@ struct SurveyConfig {
   /// Everything the estimator wants to know; the keys of the job write straight into it.
   fusion::AidedInsOptions estimator;
   std::vector<double> initial_position;  ///< deg, deg, m
+  fusion::LandmarkOptions landmark_method;  ///< what `method = "landmark"` wants to know besides
 
   GeometryConfig geometry;  ///< track geometry, when the job has the table
 

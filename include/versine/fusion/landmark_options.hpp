@@ -22,7 +22,7 @@ enum class LandmarkSmoother { rts, two_filter };
 struct LandmarkOptions {
   sensors::TriadErrors gyro;                ///< of the IMU's grade
   double alignment_duration = 900.0;        ///< s of the standing start used to align; less when it moves off earlier
-  std::optional<double> heading;            ///< rad; instead of gyrocompassing
+  std::optional<double> heading;            ///< rad, of the trolley's x axis; instead of gyrocompassing
   double heading_sigma = 1.0 * units::deg;  ///< rad, of `heading`
   std::optional<GivenAttitude> attitude;    ///< at the first sample; then no standing start is needed
   double pitch_sigma = 0.005 * units::deg;  ///< rad, equivalent pitch at the start (level and mounting)
@@ -45,6 +45,7 @@ struct LandmarkOptions {
   double standing_tolerance = 2e-3;    ///< m the odometer may show while the trolley stands
   bool skip_moving_landmarks = false;  ///< leave out a landmark taken in motion; otherwise it is an error
   double node_interval = 0.5;          ///< s between epochs of the filters; landmarks have their own
+  double output_rate = 0.0;            ///< Hz of the trajectory; 0: every IMU sample
   double chain_interval = 1.0;         ///< s between epochs of Solution::chain; 0: no chain
   double model_error_limit = 0.3e-3;   ///< m; where the reduced model may be off by more, the run warns
 };
