@@ -44,6 +44,8 @@ simulation::StraightRun straight_run(const MonteCarloSetup& setup) {
   run.accelerometer = p.accelerometer;
   run.scale = p.scale;
   run.scale_walk = p.scale_walk;
+  run.distance_walk = p.distance_walk;
+  run.path_walk = p.path_walk;
   run.landmark = p.landmark;
   return run;
 }

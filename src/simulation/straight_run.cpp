@@ -70,7 +70,7 @@ struct Timetable {
 
 StraightRecording simulate_straight(const StraightRun& run, std::uint64_t seed) {
   RandomStream gyro(seed, "gyro"), accelerometer(seed, "accelerometer"), wheel(seed, "odometer"),
-      total(seed, "landmark");
+      total(seed, "landmark"), stray(seed, "path"), slip(seed, "slip");
   Timetable timetable(run);
   const auto n = static_cast<std::size_t>(timetable.end * run.rate);
   const double dt = 1.0 / run.rate;
@@ -118,10 +118,18 @@ StraightRecording simulate_straight(const StraightRun& run, std::uint64_t seed) 
     sample.dvel = force + accelerometer_bias;
     if (white_force > 0.0) sample.dvel += white_force * accelerometer.normal3();
     r.distance[i] = d;
-    if (moved != 0.0) place = geodesy::wgs84.displaced(place, moved * direction);  // a rhumb line, metre by metre
+    if (moved != 0.0) {
+      Eigen::Vector3d way = moved * direction;  // a rhumb line, metre by metre
+      if (run.path_walk > 0.0) {
+        const double step_walk = run.path_walk * std::sqrt(moved), aside = step_walk * stray.normal();
+        way += Eigen::Vector3d(-s * aside, c * aside, step_walk * stray.normal());
+      }
+      place = geodesy::wgs84.displaced(place, way);
+    }
     r.truth[i] = place;
     if (i % static_cast<std::size_t>(every) == 0 || i == n) {
       wheel_distance += (1.0 + scale) * (d - wheel_before);
+      if (run.distance_walk > 0.0) wheel_distance += run.distance_walk * std::sqrt(d - wheel_before) * slip.normal();
       wheel_before = d;
       r.odometer.samples.push_back({time, wheel_distance});
       scale += run.scale_walk * std::sqrt(every * dt) * wheel.normal();

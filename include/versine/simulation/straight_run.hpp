@@ -26,6 +26,8 @@ struct StraightRun {
   sensors::TriadErrors accelerometer;  ///< bias and random walk only
   double scale = 0.0;                  ///< sigma of the odometer's scale error
   double scale_walk = 0.0;             ///< 1/sqrt(s)
+  double distance_walk = 0.0;          ///< m/sqrt(m), odometer besides its scale
+  double path_walk = 0.0;              ///< m/sqrt(m), body against the direction it points in, sideways and up
   double landmark = 0.0;               ///< sigma, m, each direction
 };
 
