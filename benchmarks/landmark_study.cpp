@@ -2,6 +2,7 @@
 // Landmark dead reckoning on simulated recordings with known truth; prints the tables of docs/planning.md.
 //   versine_landmark_study groups SEEDS     six runs of 120 m as in Jiang 2017 section 6.2
 //   versine_landmark_study tunnel [SEED]    5 km with curves and cant, beside the aided INS
+//   versine_landmark_study validity         the same line tighter and tighter: the reduced model's own error
 #include <fmt/format.h>
 
 #include <cmath>
@@ -92,6 +93,7 @@ bool error_at(const geodesy::Trajectory& t, const geodesy::TrajectoryPoint& trut
 /// between them.
 simulation::Scenario power_cycle() {
   simulation::Scenario s = base(90 * deg);  // east: the lateral direction is north, as in the paper's table
+  s.track.spectrum = simulation::Spectrum::german_low;
   s.motion.start = 20.0;
   s.motion.stand = 900.0;
   for (int group = 0; group < 3; ++group) {
@@ -102,46 +104,42 @@ simulation::Scenario power_cycle() {
 }
 
 int groups(int seeds) {
-  const simulation::Scenario scenario = power_cycle();
-  const auto world = simulation::prepare(scenario);
-  if (!world) return fmt::print(stderr, "{}\n", world.error().message()), 1;
+  constexpr double calibrated = 0.05e-3;  // rad, what calibration left of each mounting angle
+  simulation::Scenario scenario = power_cycle();
   std::vector<std::array<Squares, 6>> all;
   SilentProgress silent;
   for (int seed = 0; seed < seeds; ++seed) {
     std::array<Squares, 6> result;
+    simulation::RandomStream mounting(simulation::run_seed(7, std::uint64_t(seed)), "mounting");
+    scenario.trolley.mounting = {calibrated * mounting.normal(), calibrated * mounting.normal(),
+                                 calibrated * mounting.normal()};
+    const auto world = simulation::prepare(scenario);
+    if (!world) return fmt::print(stderr, "{}\n", world.error().message()), 1;
+    auto options = options_for(scenario);
+    options.mounting_sigma = calibrated;
     for (int cycle = 0; cycle < 2; ++cycle) {
       const auto r = simulation::observe(**world, simulation::run_seed(7, std::uint64_t(2 * seed + cycle)));
-      // The paper measures landmarks on the way out; the way back is driven without.
       Series<sensors::LandmarkSample> landmarks;
-      std::vector<Time> starts;
-      double last = -inf;
-      for (const auto& l : r.landmarks) {
-        const auto at = std::lower_bound(r.truth.trajectory.begin(), r.truth.trajectory.end(), l.time,
-                                         [](const auto& p, Time t) { return p.time < t; });
-        const double d = r.truth.progress[std::size_t(at - r.truth.trajectory.begin())].distance;
-        if (d < last - 30.0 || last == -inf) starts.push_back(l.from);
-        last = d;
-        landmarks.samples.push_back(l);
-      }
-      const auto solved =
-          fusion::run_landmark_dead_reckoning({&r.imu, &r.odometers[0], &landmarks}, options_for(scenario), silent);
+      landmarks.samples = r.landmarks;
+      const auto solved = fusion::run_landmark_dead_reckoning({&r.imu, &r.odometers[0], &landmarks}, options, silent);
       if (!solved) return fmt::print(stderr, "{}\n", solved.error().message()), 1;
       // Every 3 m of each way out.
-      int group = -1;
-      double next = 0.0, before = inf;
+      std::size_t group = 3 * std::size_t(cycle);
+      bool out = false;
+      double next = 20.0;
       for (std::size_t i = 0; i < r.truth.progress.size(); ++i) {
         const auto& p = r.truth.progress[i];
-        if (p.speed > 0.0 && before <= 0.0 && p.distance < 21.0) {
-          ++group;
+        if (p.speed < 0.0 && out) {
+          out = false;
           next = 20.0;
+          ++group;
         }
-        if (p.speed != 0.0 || before == inf) before = p.speed == 0.0 ? 0.0 : p.speed;
-        if (group < 0 || group > 2 || !(p.speed > 0.0) || p.distance < next) continue;
+        if (!(p.speed > 0.0) || p.distance < next) continue;
+        out = true;
         next += 3.0;
         Eigen::Vector3d e;
         Eigen::Matrix3d P;
-        if (error_at(solved->solution.smoothed, r.truth.trajectory[i], e, P))
-          result[std::size_t(3 * cycle + group)].add(e, P);
+        if (error_at(solved->solution.smoothed, r.truth.trajectory[i], e, P)) result[group].add(e, P);
       }
     }
     all.push_back(result);
@@ -190,8 +188,24 @@ int groups(int seeds) {
 // --- 5 km tunnel
 // --------------------------------------------------------------------------------------------------------
 
+auto tunnel_motion(double spacing) {
+  decltype(simulation::Scenario::motion) m;
+  m.start = 20.0;
+  m.stand = 900.0;
+  m.legs.push_back({.to = 5120.0, .speed = 1.0, .stop = 30.0, .stop_every = spacing, .stop_each = 30.0});
+  return m;
+}
+
 simulation::Scenario tunnel(double radius, double cant, double spacing) {
   simulation::Scenario s = base(30 * deg);
+  if (!std::isfinite(radius)) {
+    s.track.alignment.horizontal =
+        *design::HorizontalAxis::chain({500000.0, 5250000.0, 30 * deg}, {design::line(5200.0)});
+    s.track.spectrum = simulation::Spectrum::german_low;
+    s.motion = tunnel_motion(spacing);
+    s.equipment.total_station->every = spacing;
+    return s;
+  }
   const auto turn = [&](double sign) {
     return std::array{design::transition(design::Shape::clothoid, 100.0, inf, sign * radius),
                       design::arc(700.0, sign * radius),
@@ -213,9 +227,7 @@ simulation::Scenario tunnel(double radius, double cant, double spacing) {
   s.track.alignment.horizontal = *design::HorizontalAxis::chain({500000.0, 5250000.0, 30 * deg}, e);
   s.track.alignment.cant = *design::CantProfile::from_points(cants);
   s.track.spectrum = simulation::Spectrum::german_low;
-  s.motion.start = 20.0;
-  s.motion.stand = 900.0;
-  s.motion.legs.push_back({.to = 5120.0, .speed = 1.0, .stop = 30.0, .stop_every = spacing, .stop_each = 30.0});
+  s.motion = tunnel_motion(spacing);
   s.equipment.total_station->every = spacing;
   return s;
 }
@@ -255,49 +267,130 @@ TunnelErrors judge(const geodesy::Trajectory& t, const simulation::SimulatedReco
   return errors;
 }
 
-int tunnel_study(std::uint64_t seed, double radius, double cant, double spacing, double mounting, double roughness) {
-  simulation::Scenario s = tunnel(radius, cant, spacing);
-  s.track.spectrum_factor = roughness;  // of the German low-disturbance spectrum
-  // What calibration left of the mounting, known to the programs as its sigma only.
+/// Both methods on one recording.
+struct Solved {
+  simulation::SimulatedRecording recording;
+  fusion::LandmarkSolution reckoned;
+  fusion::AidedInsResult aided;
+};
+
+/// What calibration left of the mounting is known to the programs as its sigma only.
+Expected<Solved> solve(simulation::Scenario s, std::uint64_t seed, double mounting, bool with_aided) {
   s.trolley.mounting = {mounting, -mounting, mounting};
-  s.trolley.mounting_sigma = {mounting, mounting, mounting};
-  const auto r = simulation::simulate(s, seed);
-  if (!r) return fmt::print(stderr, "{}\n", r.error().message()), 1;
+  auto r = simulation::simulate(s, seed);
+  if (!r) return tl::unexpected(r.error());
   Series<sensors::LandmarkSample> landmarks;
   landmarks.samples = r->landmarks;
   SilentProgress silent;
   SilentLog log;
   auto o = options_for(s);
   o.mounting_sigma = std::max(mounting, 0.02e-3);
-  const auto reckoned = fusion::run_landmark_dead_reckoning({&r->imu, &r->odometers[0], &landmarks}, o, silent);
-  if (!reckoned) return fmt::print(stderr, "{}\n", reckoned.error().message()), 1;
+  auto reckoned = fusion::run_landmark_dead_reckoning({&r->imu, &r->odometers[0], &landmarks}, o, silent);
+  if (!reckoned) return tl::unexpected(reckoned.error());
+  Solved result{.recording = std::move(*r), .reckoned = std::move(*reckoned)};
+  if (!with_aided) return result;
 
   fusion::AidedInsOptions a;
   a.imu_errors = s.equipment.imu->errors;
   a.mounting_sigma = std::max(mounting, 0.02e-3);
   a.wheel_lever.l_b = o.lever_odometer;
   a.landmark_lever.l_b = o.lever_landmark;
+  a.constraint_sigma = 0.1 * mm;  // m/s; rollers on rails
+  a.constraint_angle = 1e-5;
+  a.zero_velocity_sigma = 0.3 * mm;
   a.odometer_sigma = 0.1 * mm;
   a.odometer_random_walk = 0.05 * mm;
   a.odometer_scale_sigma = 1e-3;
   a.odometer_scale_walk = 8e-6;
   a.alignment_duration = 900.0;
-  fusion::AidedInsInput in{.imu = r->imu, .odometer = r->odometers[0], .landmarks = landmarks};
-  const auto aided = fusion::run_aided_ins(in, a, silent, log);
-  if (!aided) return fmt::print(stderr, "{}\n", aided.error().message()), 1;
+  const fusion::AidedInsInput in{
+      .imu = result.recording.imu, .odometer = result.recording.odometers[0], .landmarks = landmarks};
+  auto aided = fusion::run_aided_ins(in, a, silent, log);
+  if (!aided) return tl::unexpected(aided.error());
+  result.aided = std::move(*aided);
+  return result;
+}
 
+/// RMS of the difference of the two methods, lateral, vertical, longitudinal.
+Eigen::Array3d difference(const geodesy::Trajectory& a, const geodesy::Trajectory& b) {
+  Squares all;
+  for (std::size_t i = 0; i < b.size(); i += 20) {
+    Eigen::Vector3d e;
+    Eigen::Matrix3d P;
+    if (!error_at(a, b[i], e, P)) continue;
+    const double yaw = geodesy::to_euler(b[i].q_nb).yaw;
+    all.add({-std::sin(yaw) * e.x() + std::cos(yaw) * e.y(), e.z(), std::cos(yaw) * e.x() + std::sin(yaw) * e.y()}, P);
+  }
+  return all.rms();
+}
+
+double largest_model_error(const fusion::LandmarkSolution& s) {
+  double worst = 0.0;
+  for (const auto& stretch : s.stretches) worst = std::max(worst, stretch.model_error);
+  return worst;
+}
+
+int tunnel_study(std::uint64_t seed, double radius, double cant, double spacing, double mounting, double roughness) {
+  simulation::Scenario s = tunnel(radius, cant, spacing);
+  s.track.spectrum_factor = roughness;  // of the German low-disturbance spectrum
+  const auto solved = solve(s, seed, mounting, true);
+  if (!solved) return fmt::print(stderr, "{}\n", solved.error().message()), 1;
   fmt::print("\nR = {:.0f} m, cant {:.0f} mm, landmark every {:.0f} m, mounting off by {:.2f} mrad, seed {}\n\n",
              radius, cant / mm, spacing, mounting * 1e3, seed);
   fmt::print(
       "| method | part | lateral | vertical | longitudinal, mm | inside 1.96 sigma, % |\n|---|---|---|---|---|---|\n");
-  judge(reckoned->solution.smoothed, *r, s).print("gyro/odometer/landmark");
-  judge(aided->solution.smoothed, *r, s).print("aided INS");
-  double worst = 0.0;
-  for (const auto& stretch : reckoned->stretches) worst = std::max(worst, stretch.model_error);
-  fmt::print("\nmodel error predicted, worst stretch: {:.2f} mm; rejected landmarks: {}\n", worst / mm,
-             reckoned->solution.record.rejections.size());
-  for (const auto& w : reckoned->solution.record.warnings) fmt::print("warning: {}\n", w);
-  for (const auto& v : reckoned->observability.verdict) fmt::print("verdict: {}\n", v);
+  judge(solved->reckoned.solution.smoothed, solved->recording, s).print("gyro/odometer/landmark");
+  judge(solved->aided.solution.smoothed, solved->recording, s).print("aided INS");
+  const auto d = difference(solved->reckoned.solution.smoothed, solved->aided.solution.smoothed);
+  fmt::print("\ndifference of the methods, RMS: lateral {:.2f}, vertical {:.2f}, longitudinal {:.2f} mm\n", d[0] / mm,
+             d[1] / mm, d[2] / mm);
+  fmt::print("model error predicted, worst stretch: {:.2f} mm; rejected landmarks: {}\n",
+             largest_model_error(solved->reckoned) / mm, solved->reckoned.solution.record.rejections.size());
+  for (const auto& w : solved->reckoned.solution.record.warnings) fmt::print("warning: {}\n", w);
+  for (const auto& v : solved->reckoned.observability.verdict) fmt::print("verdict: {}\n", v);
+  return 0;
+}
+
+/// The tunnel with landmarks of 0.02 mm, quiet gyros and a smooth track, so that what is left is the reduced model's:
+/// gyro bias, scale factor and misalignment, level, heading and mounting through curve and cant.
+int validity_study(double mounting, int seeds) {
+  fmt::print(
+      "\n| R, m | cant, mm | landmark every, m | lateral | vertical, mm | predicted, worst stretch, mm | warns |\n"
+      "|---|---|---|---|---|---|---|\n");
+  const std::pair<double, double> lines[] = {{inf, 0.0},     {3000.0, 60.0}, {800.0, 100.0},
+                                             {400.0, 150.0}, {250.0, 150.0}, {150.0, 150.0}};
+  for (const auto& [radius, cant] : lines) {
+    for (const double spacing : {60.0, 120.0, 240.0}) {
+      simulation::Scenario s = tunnel(radius, cant * mm, spacing);
+      s.track.spectrum_factor = 1e-6;
+      s.equipment.imu->errors.gyro.random_walk *= 0.02;
+      s.equipment.total_station->sigma_position = 0.02 * mm;
+      s.equipment.odometers[0].scale_walk = 0.0;
+      s.equipment.odometers[0].quantum = 0.0;
+      Eigen::Array2d squares = Eigen::Array2d::Zero();
+      double predicted = 0.0;
+      bool warns = false;
+      for (int seed = 1; seed <= seeds; ++seed) {
+        const auto solved = solve(s, std::uint64_t(seed), mounting, false);
+        if (!solved) return fmt::print(stderr, "{}\n", solved.error().message()), 1;
+        const TunnelErrors e = judge(solved->reckoned.solution.smoothed, solved->recording, s);
+        Squares worst = e.straight;
+        if (e.curve.count > 0.0) {
+          worst = e.curve;
+          worst.sum += e.ramp.sum;
+          worst.count += e.ramp.count;
+        }
+        squares += worst.rms().head<2>().square() / seeds;
+        predicted = std::max(predicted, largest_model_error(solved->reckoned));
+        for (const auto& w : solved->reckoned.solution.record.warnings) {
+          warns = warns || w.find("reduced model") != std::string::npos;
+        }
+      }
+      fmt::print("| {} | {:.0f} | {:.0f} | {:.2f} | {:.2f} | {:.2f} | {} |\n",
+                 std::isfinite(radius) ? fmt::format("{:.0f}", radius) : "straight", cant, spacing,
+                 std::sqrt(squares[0]) / mm, std::sqrt(squares[1]) / mm, predicted / mm, warns ? "yes" : "no");
+    }
+  }
   return 0;
 }
 
@@ -310,8 +403,12 @@ int main(int argc, char** argv) {
     return tunnel_study(static_cast<std::uint64_t>(number(2, 1)), number(3, 800.0), number(4, 100.0) * mm,
                         number(5, 60.0), number(6, 0.1) * 1e-3, number(7, 1.0));
   }
+  if (argc > 1 && std::strcmp(argv[1], "validity") == 0) {
+    return validity_study(number(2, 0.1) * 1e-3, static_cast<int>(number(3, 3)));
+  }
   fmt::print(stderr,
-             "usage: {} groups [SEEDS] | tunnel [SEED [RADIUS_M [CANT_MM [SPACING_M [MOUNTING_MRAD [ROUGHNESS]]]]]]\n",
+             "usage: {} groups [SEEDS] | tunnel [SEED [RADIUS_M [CANT_MM [SPACING_M [MOUNTING_MRAD [ROUGHNESS]]]]]] |\n"
+             "       validity [MOUNTING_MRAD [SEEDS]]\n",
              argv[0]);
   return 2;
 }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "versine/app/simulate.hpp"
 #include "versine/core/units.hpp"
 #include "versine/geodesy/attitude.hpp"
@@ -10,6 +13,15 @@ namespace versine::app {
 namespace {
 std::string list(const Eigen::Vector3d& v) {
   return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x(), v.y(), v.z());
+}
+
+/// What a counter on a trolley's wheel is worth: its resolution, its slips, and 0.1 mm/sqrt(m) for uneven rolling.
+std::string wheel_noise(const simulation::OdometerModel& o) {
+  const double resolution = std::max(o.quantum, 0.2e-3) / std::sqrt(12.0);
+  const double slips = o.slip_distance * std::sqrt(2.0 * o.slip_per_km / 1000.0);
+  return fmt::format(
+      "sigma_m = {:.3g}\nrandom_walk_mpsqrtm = {:.3g}\nscale_sigma = {:.3g}\nscale_walk_psqrts = {:.3g}\n", resolution,
+      std::hypot(1e-4, slips), std::max(2.0 * o.scale, 1e-4), std::max(o.scale_walk, 1e-6));
 }
 }  // namespace
 
@@ -43,6 +55,7 @@ std::string survey_job_for(const SimulateConfig& c, const simulation::SimulatedR
                                                 : Eigen::Vector3d(0.5 * (trolley.front_x + trolley.rear_x),
                                                                   trolley.reference_y, trolley.contact_z);
     text += fmt::format("\n[wheel]\nlever_arm_m = {}\n", list(C_bv * wheel));
+    if (!c.has_vehicle) text += wheel_noise(c.scenario.equipment.odometers.front());
   }
   if (!c.has_vehicle) {
     // Rollers on rails: nothing but the rails' own irregularity moves a trolley sideways.

@@ -2,6 +2,7 @@
 #include "versine/app/survey_landmark.hpp"
 
 #include <array>
+#include <cmath>
 
 #include "versine/core/units.hpp"
 #include "versine/fusion/landmark_dead_reckoning.hpp"
@@ -68,8 +69,9 @@ fusion::LandmarkOptions landmark_options(const fusion::AidedInsOptions& shared, 
     own.heading_sigma = shared.initial_heading_sigma;
   }
   own.scale_sigma = shared.odometer_scale_sigma;
-  own.scale_walk = std::max(own.scale_walk, shared.odometer_scale_walk);
+  if (shared.odometer_scale_walk > 0.0) own.scale_walk = shared.odometer_scale_walk;
   own.distance_walk = shared.odometer_random_walk;
+  own.odometer_resolution = shared.odometer_sigma * std::sqrt(12.0);
   own.mounting = shared.mounting;
   if (shared.mounting_sigma > 0.0) own.mounting_sigma = shared.mounting_sigma;
   own.lever_odometer = shared.wheel_lever.l_b;

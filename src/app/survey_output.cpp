@@ -96,7 +96,8 @@ std::string text_of(const SurveyResult& result, const json& s) {
                         i["mean_nis_per_row"].get<double>(), i["lower"].get<double>(), i["upper"].get<double>());
   }
   for (const Finding& f : result.input.record.findings) {
-    text += fmt::format("  {}: {} x {}, {}\n", f.sensor, f.count, f.kind, to_string(f.action));
+    text += f.count > 0 ? fmt::format("  {}: {} x {}, {}\n", f.sensor, f.count, f.kind, to_string(f.action))
+                        : fmt::format("  {}: {}\n", f.kind, f.detail);
   }
   for (const auto& warning : result.estimate.solution.record.warnings) text += "  warning: " + warning + "\n";
   if (result.geometry) text += geometry_summary_text(*result.geometry);

@@ -51,7 +51,7 @@ StaticStart from_given(const GivenAttitude& given, const geodesy::Geodetic& plac
 Expected<StaticStart> static_start(const sensors::ImuSeries& imu, const Series<sensors::OdometerSample>& odometer,
                                    const geodesy::Geodetic& place, const LandmarkOptions& options) {
   if (options.attitude) return from_given(*options.attitude, place, options);
-  const Time moved = first_motion(odometer, options.standing_tolerance);
+  const Time moved = first_motion(odometer, options.standing_tolerance + options.odometer_resolution);
   const Time last = std::min(moved - Duration::from_seconds(1.0),
                              imu.front().time + Duration::from_seconds(options.alignment_duration));
   const double duration = (last - imu.front().time).seconds();

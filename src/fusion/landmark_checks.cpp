@@ -80,7 +80,7 @@ Expected<std::vector<std::size_t>> usable_landmarks(const LandmarkInput& in, con
     const double moved = std::abs(distance_at(*in.odometer, to) - distance_at(*in.odometer, from));
     const double since =
         l.time < start ? std::abs(distance_at(*in.odometer, start) - distance_at(*in.odometer, l.time)) : 0.0;
-    if (std::max(moved, since) <= o.standing_tolerance) {
+    if (std::max(moved, since) <= o.standing_tolerance + o.odometer_resolution) {
       usable.push_back(i);
       continue;
     }

@@ -66,48 +66,56 @@ std::string quantity(double sigma, const std::string& unit) {
   return fmt::format("{:.2f} mm", sigma / units::mm);
 }
 
-void add_states(Observability& o, const Prior& prior, const Smoothed& s) {
-  const auto largest = [](const auto& epochs, int state) {
-    double P = 0.0;
-    for (const auto& e : epochs) P = std::max(P, e.estimate.covariance(state, state));
-    return std::sqrt(P);
-  };
+/// Largest sigma of a state, and where that is.
+struct Weakest {
+  double sigma = 0.0;
+  std::size_t node = 0;
+};
+template <class Epochs>
+Weakest weakest(const Epochs& epochs, int state) {
+  double P = 0.0;
+  std::size_t node = 0;
+  for (std::size_t k = 0; k < epochs.size(); ++k) {
+    const double here = epochs[k].estimate.covariance(state, state);
+    if (here > P) P = here, node = k;
+  }
+  return {std::sqrt(P), node};
+}
+
+void add_states(Observability& o, std::span<const double> distance, const Prior& prior, const Smoothed& s) {
   const struct {
     const char* name;
     const char* unit;
-    double before, after;
-  } rows[] = {{"pitch of the trolley", "deg", prior.pitch, largest(s.vertical, vertical::pitch)},
-              {"bias of the lateral gyro", "deg/h", prior.bias, largest(s.vertical, vertical::bias)},
-              {"odometer scale", "ppm", prior.scale, largest(s.level, level::scale)},
-              {"heading of the trolley", "deg", prior.heading, largest(s.level, level::heading)},
-              {"bias of the vertical gyro", "deg/h", prior.bias, largest(s.level, level::bias)}};
+    double before;
+    Weakest after;
+  } rows[] = {{"pitch of the trolley", "deg", prior.pitch, weakest(s.vertical, vertical::pitch)},
+              {"bias of the lateral gyro", "deg/h", prior.bias, weakest(s.vertical, vertical::bias)},
+              {"odometer scale", "ppm", prior.scale, weakest(s.level, level::scale)},
+              {"heading of the trolley", "deg", prior.heading, weakest(s.level, level::heading)},
+              {"bias of the vertical gyro", "deg/h", prior.bias, weakest(s.level, level::bias)}};
   for (const auto& row : rows) {
-    o.states.push_back({row.name, row.before, row.after, row.before / row.after});
-    if (row.before < 2.0 * row.after) {
+    const double at = distance[row.after.node];
+    o.states.push_back({row.name, row.before, row.after.sigma, row.before / row.after.sigma, at});
+    if (row.before < 2.0 * row.after.sigma) {
       o.verdict.push_back(
-          fmt::format("{}: weak; {} before the run, {} at worst in it. The landmarks say little about "
-                      "it; its value rests on what was given.",
-                      row.name, quantity(row.before, row.unit), quantity(row.after, row.unit)));
+          fmt::format("{}: weak; {} before the run, {} at worst in it, {:.0f} m from the start. The landmarks say "
+                      "little about it; its value rests on what was given.",
+                      row.name, quantity(row.before, row.unit), quantity(row.after.sigma, row.unit), at));
     }
   }
 }
 
 /// The place of the largest position sigma, in words.
-void add_weakest_place(Observability& o, std::span<const Node> nodes, std::span<const Tie> ties,
+void add_weakest_place(Observability& o, std::span<const double> distance, std::span<const Tie> ties,
                        std::span<const Fit> fits, const Smoothed& s) {
-  double at = 0.0, worst_at = 0.0, worst = 0.0;
+  double worst = 0.0;
   std::size_t worst_node = 0;
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    at += nodes[k].motion.distance;
+  for (std::size_t k = 0; k < distance.size(); ++k) {
     const double sigma = std::sqrt(std::max(s.vertical[k].estimate.covariance(0, 0),
                                             s.level[k].estimate.covariance.topLeftCorner<2, 2>().trace()));
-    if (sigma > worst) {
-      worst = sigma;
-      worst_at = at;
-      worst_node = k;
-    }
+    if (sigma > worst) worst = sigma, worst_node = k;
   }
-  std::size_t first = nodes.size(), last = 0;
+  std::size_t first = distance.size(), last = 0;
   for (std::size_t i = 0; i < ties.size(); ++i) {
     if (!fits[i].used) continue;
     first = std::min(first, ties[i].node);
@@ -116,8 +124,8 @@ void add_weakest_place(Observability& o, std::span<const Node> nodes, std::span<
   const char* where = worst_node < first  ? "before the first landmark: nothing holds that end"
                       : worst_node > last ? "beyond the last landmark: nothing holds that end"
                                           : "between two landmarks";
-  o.verdict.push_back(
-      fmt::format("position is weakest {:.1f} m from the start ({:.2f} mm), {}.", worst_at, worst / units::mm, where));
+  o.verdict.push_back(fmt::format("position is weakest {:.1f} m from the start ({:.2f} mm), {}.", distance[worst_node],
+                                  worst / units::mm, where));
 }
 
 }  // namespace
@@ -155,10 +163,11 @@ Observability observability_at(double speed, double heading, double interval, co
 
 Observability observability_of(std::span<const Node> nodes, const Channels& channels, std::span<const Tie> ties,
                                std::span<const Fit> fits, const Prior& prior, const Smoothed& smoothed) {
-  double distance = 0.0, moving = 0.0, landmark_sigma = 0.0;
+  double moving = 0.0, landmark_sigma = 0.0;
   std::size_t used = 0;
+  std::vector<double> distance;  // from the start, at each node
   for (const auto& node : nodes) {
-    distance += node.motion.distance;
+    distance.push_back((distance.empty() ? 0.0 : distance.back()) + std::abs(node.motion.distance));
     if (std::abs(node.speed) > 0.01) moving += node.duration;
   }
   for (std::size_t i = 0; i < ties.size(); ++i) {
@@ -170,8 +179,8 @@ Observability observability_of(std::span<const Node> nodes, const Channels& chan
   landmark_sigma /= static_cast<double>(used);
   const double heading = geodesy::to_euler(nodes.front().q_nv).yaw;
   Observability o =
-      observability_at(distance / moving, heading, moving / static_cast<double>(std::max<std::size_t>(used, 2) - 1),
-                       prior, landmark_sigma);
+      observability_at(distance.back() / moving, heading,
+                       moving / static_cast<double>(std::max<std::size_t>(used, 2) - 1), prior, landmark_sigma);
   const auto v = judge(stacked<VerticalStep>(channels.vertical, ties, fits, 1, vertical_prior(prior), 2));
   const auto l = judge(stacked<LevelStep>(channels.level, ties, fits, 2, level_prior(prior), 0));
   o.run_vertical_rank = v.rank;
@@ -184,9 +193,11 @@ Observability observability_of(std::span<const Node> nodes, const Channels& chan
                     "the rest comes from what was given at the start. A third landmark would determine "
                     "the gyro biases too.",
                     used, o.run_vertical_rank, vertical::size, o.run_level_rank, level::size));
+  } else {
+    o.verdict.push_back(fmt::format("the {} landmarks determine every state by themselves.", used));
   }
-  add_states(o, prior, smoothed);
-  add_weakest_place(o, nodes, ties, fits, smoothed);
+  add_states(o, distance, prior, smoothed);
+  add_weakest_place(o, distance, ties, fits, smoothed);
   return o;
 }
 

@@ -14,6 +14,7 @@ struct StateVerdict {
   double before = 0.0;  ///< sigma before the run (the prior), in the state's unit
   double after = 0.0;   ///< largest smoothed sigma in the run
   double gain = 0.0;    ///< before / after; below 2 the landmarks say little about it
+  double at = 0.0;      ///< m travelled from the start to where `after` is reached
 };
 
 /// Observability of the two channels. `rank` and `condition` of eq. 26 hold for motion at the run's mean speed and
@@ -25,7 +26,7 @@ struct Observability {
   int run_vertical_rank = 0, run_level_rank = 0;
   double run_vertical_condition = 0.0, run_level_condition = 0.0;
   std::vector<StateVerdict> states;
-  std::vector<std::string> verdict;  ///< plain sentences, the weak first
+  std::vector<std::string> verdict;  ///< plain sentences: what is determined, what is weak and where
 };
 
 /// Rank and condition of eq. 26 alone, for a speed and heading; `interval` (s) scales the time derivatives.
