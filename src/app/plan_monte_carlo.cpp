@@ -2,10 +2,12 @@
 #include "versine/app/plan_monte_carlo.hpp"
 
 #include <fmt/format.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <mutex>
@@ -157,7 +159,8 @@ Expected<MonteCarloResult> run_monte_carlo(const MonteCarloSetup& setup, Progres
   std::atomic<std::size_t> done{0};
   std::atomic<bool> stop{false};
   std::mutex reporting;
-  tbb::task_arena arena(setup.threads > 0 ? setup.threads : tbb::task_arena::automatic);
+  const int cores = tbb::info::default_concurrency();
+  tbb::task_arena arena(setup.threads > 0 ? std::min(setup.threads, cores) : cores);
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, errors.size(), [&](std::size_t i) {
       if (stop) return;
