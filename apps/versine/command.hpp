@@ -15,10 +15,12 @@ enum Exit : int {
   unacceptable = 1,  ///< the job ran and found the result unacceptable
   bad_input = 2,     ///< a file, a key or an argument is wrong
   internal = 3,      ///< a fault of Versine's own
+  batch_usage = 64,  ///< of `versine batch`, which has exit codes of its own (batch/outcome.hpp)
 };
 
 /// All commands. Each declares its options and leaves a callback that sets `exit`. A new command is one file in
 /// commands/, its line here and its place in main.cpp's list, which is the order of the help.
+void add_batch(CLI::App& app, int& exit);
 void add_calibrate(CLI::App& app, int& exit);
 void add_check(CLI::App& app, int& exit);
 void add_geometry(CLI::App& app, int& exit);

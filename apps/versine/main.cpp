@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdio>
 #include <exception>
+#include <string_view>
 
 #include "command.hpp"
 #include "versine/app/version.hpp"
@@ -36,13 +37,14 @@ int main(int argc, char** argv) {
   app.get_formatter()->column_width(34);
   int exit = good;
   for (const auto add : {add_init, add_check, add_info, add_simulate, add_survey, add_geometry, add_calibrate, add_gnss,
-                         add_stationing, add_plan, add_compare, add_alignment, add_georef, add_network}) {
+                         add_stationing, add_plan, add_compare, add_alignment, add_georef, add_batch, add_network}) {
     add(app, exit);
   }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? good : bad_input;
+    const bool batch = argc > 1 && std::string_view(argv[1]) == "batch";  // engines read its exit codes
+    return app.exit(error) == 0 ? good : batch ? batch_usage : bad_input;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "versine: internal error: %s\n  please report this with the job file and the command\n",
                  error.what());

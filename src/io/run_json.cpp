@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "versine/io/run_json.hpp"
 
-#include <openssl/evp.h>
-
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -11,6 +9,7 @@
 
 #include "text_output.hpp"
 #include "versine/core/calendar.hpp"
+#include "versine/io/sha256.hpp"
 
 namespace versine::io {
 
@@ -76,19 +75,15 @@ Expected<RunInput> describe_input(std::string role, std::string written, const s
                  .advice = "check the path and its permissions"});
   };
   if (!file) return unreadable();
-  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
-  EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr);
+  Sha256 hash;
   RunInput input{.role = std::move(role), .written = std::move(written), .path = path};
   std::vector<char> block(std::size_t{1} << 20);
   while (const std::size_t n = std::fread(block.data(), 1, block.size(), file.get())) {
-    EVP_DigestUpdate(context.get(), block.data(), n);
+    hash.add(block.data(), n);
     input.bytes += n;
   }
   if (std::ferror(file.get()) != 0) return unreadable();
-  unsigned char digest[EVP_MAX_MD_SIZE];
-  unsigned length = 0;
-  EVP_DigestFinal_ex(context.get(), digest, &length);
-  for (unsigned i = 0; i < length; ++i) input.sha256 += fmt::format("{:02x}", digest[i]);
+  input.sha256 = hash.hex();
   return input;
 }
 
