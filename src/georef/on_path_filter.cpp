@@ -66,17 +66,36 @@ class PathFilter {
       out_.colour_kept.push_back(kept_);
       out_.predicted.push_back(x_);
       out_.predicted_covariance.push_back(P_);
-      if (e.standing) scalar(0.0, 1e-4, speed_row(), true);
-      if (e.speed) scalar(*e.speed, e.sigma_speed * e.sigma_speed, speed_row(), false);
-      if (e.position) position(e, k);
-      if (e.turn) turn(e);
+      measure(e, k);
       out_.updated.push_back(x_);
       out_.updated_covariance.push_back(P_);
     }
     return std::move(out_);
   }
 
+  /// One epoch, for a caller that keeps the state.
+  void advance(const Epoch& e, std::int64_t steps, TrackerState& s) {
+    x_ = s.x, P_ = s.P, across_ = s.across, across_variance_ = s.across_variance;
+    last_sigma_ = s.last_sigma, astray_ = s.astray;
+    if (steps > 0) predict(e, steps);
+    if (e.position) renew_colour(e);
+    measure(e, 0);
+    s.log_likelihood += out_.log_likelihood;
+    s.x = x_, s.P = P_, s.across = across_, s.across_variance = across_variance_;
+    s.last_sigma = last_sigma_, s.astray = astray_;
+    if (!out_.residuals.empty()) s.nis = out_.residuals.back().nis, s.weight = out_.residuals.back().weight;
+    out_.log_likelihood = 0.0;
+    out_.residuals.clear();
+  }
+
  private:
+  void measure(const Epoch& e, std::size_t k) {
+    if (e.standing) scalar(0.0, 1e-4, speed_row(), true);
+    if (e.speed) scalar(*e.speed, e.sigma_speed * e.sigma_speed, speed_row(), false);
+    if (e.position) position(e, k);
+    if (e.turn) turn(e);
+  }
+
   static Eigen::RowVector4d speed_row() { return {0, 1, 0, 0}; }
 
   void initialise() {
@@ -270,6 +289,11 @@ class PathFilter {
 Filtered filter_on_path(const network::PathCoordinates& path, const Epochs& epochs, const Options& options,
                         std::span<const double> weights) {
   return PathFilter(path, epochs, options, weights).run();
+}
+
+void advance(const network::PathCoordinates& path, const Epochs& model, const Options& options, const Epoch& epoch,
+             std::int64_t steps, TrackerState& state) {
+  PathFilter(path, model, options, {}).advance(epoch, steps, state);
 }
 
 std::vector<double> smoothed_weights(const network::PathCoordinates& path, const Epochs& epochs, const Options& options,

@@ -65,6 +65,20 @@ struct Filtered {
   double log_likelihood = 0.0;
 };
 
+/// What the filter carries from one epoch to the next, for those who feed it an epoch at a time (online.hpp).
+struct TrackerState {
+  State4 x = State4::Zero();
+  Covariance4 P = Covariance4::Identity();
+  double across = 0.0, across_variance = 1.0;  ///< correlated error across, in units of its sigma
+  double last_sigma = 0.0;                     ///< of the fix before, m
+  int astray = 0;                              ///< fixes in a row that agree with the track, not with the distance
+  double log_likelihood = 0.0;                 ///< so far
+  double nis = 0.0, weight = 1.0;              ///< of the last fix
+};
+/// The same filter, one epoch: predicts by `steps` of `model`'s grid (and its motion), then uses what was measured.
+void advance(const network::PathCoordinates& path, const Epochs& model, const Options& options, const Epoch& epoch,
+             std::int64_t steps, TrackerState& state);
+
 struct Smoothed {
   std::vector<State4> state;
   std::vector<Covariance4> covariance;
