@@ -36,8 +36,9 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.get_formatter()->column_width(34);
   int exit = good;
-  for (const auto add : {add_init, add_check, add_info, add_simulate, add_survey, add_geometry, add_calibrate, add_gnss,
-                         add_stationing, add_plan, add_compare, add_alignment, add_georef, add_batch, add_network}) {
+  for (const auto add :
+       {add_init, add_check, add_info, add_simulate, add_survey, add_geometry, add_calibrate, add_gnss, add_stationing,
+        add_plan, add_view, add_compare, add_alignment, add_georef, add_batch, add_network}) {
     add(app, exit);
   }
   try {

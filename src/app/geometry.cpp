@@ -220,6 +220,9 @@ std::string geometry_summary_json(const GeometryResult& r) {
            {"height_datum", g.height_datum},
            {"sleepers", g.sleepers.size()}};
   for (const auto& [what, how] : g.conventions) out["conventions"][what] = how;
+  for (const auto& p : g.posted) {
+    out["posted"].push_back({{"start_m", p.start}, {"posted_m", p.posted_start}, {"increasing", p.increasing}});
+  }
   if (r.quality) {
     json levels = json::object();
     for (const auto& e : r.quality->exceedances) levels[e.level] = levels.value(e.level, 0) + 1;

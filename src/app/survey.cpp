@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "versine/app/progress_file.hpp"
 #include "versine/app/survey_landmark.hpp"
 #include "versine/app/survey_output.hpp"
 #include "versine/app/withhold.hpp"
@@ -86,8 +87,10 @@ Expected<SurveyRun> run_survey(const std::filesystem::path& job, std::span<const
   }
   auto writer = io::ResultFolder::create(folder);
   if (!writer) return tl::unexpected(writer.error());
-  auto result = compute_survey(*config, job, progress, log);
+  ProgressFile visible(progress, writer->folder());
+  auto result = compute_survey(*config, job, visible, log);
   if (!result) return tl::unexpected(result.error());
+  visible.finish();
   return write_survey(*config, *result, *writer, progress);
 }
 

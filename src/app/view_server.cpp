@@ -101,10 +101,19 @@ struct ViewServer::Impl {
     server.Get("/api/result", [this](const httplib::Request&, httplib::Response& response) {
       response.set_content(content.result_json(), "application/json");
     });
+    server.Get("/api/progress", [this](const httplib::Request&, httplib::Response& response) {
+      response.set_content(content.progress_json ? content.progress_json() : "{}", "application/json");
+    });
+    server.Get("/api/values", [this](const httplib::Request& request, httplib::Response& response) {
+      const auto x = number(request, "x");
+      if (!content.values_json || !x) return refuse(response, 404, "no such place in this result");
+      response.set_content(content.values_json(*x), "application/json");
+    });
     server.Get(
         R"(/api/series/([A-Za-z0-9_:.%-]+))", [this](const httplib::Request& request, httplib::Response& response) {
           constexpr double infinity = std::numeric_limits<double>::infinity();
           const double buckets = number(request, "buckets").value_or(0.0);
+          if (!content.series) return refuse(response, 404, "no such series in this result");
           const auto body = content.series(request.matches[1].str(), number(request, "from").value_or(-infinity),
                                            number(request, "to").value_or(infinity),
                                            buckets > 0.0 && buckets <= 1e7 ? static_cast<std::size_t>(buckets) : 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Result, Series } from './contract';
+import type { Progress, Result, Series, Values } from './contract';
 
 // The token comes in the URL's fragment, which no server log and no referrer ever sees; it is kept for reloads of this
 // tab and taken out of the address bar.
@@ -32,15 +32,15 @@ export async function getResult(): Promise<Result> {
   return (await request('api/result')).json();
 }
 
-export async function getJson<T>(path: string): Promise<T> {
-  return (await request(path)).json();
+export async function getProgress(): Promise<Progress> {
+  return (await request('api/progress')).json();
 }
 
-export async function getText(path: string): Promise<string> {
-  return (await request(path)).text();
+export async function getValues(x: number): Promise<Values> {
+  return (await request(`api/values?x=${x}`)).json();
 }
 
-/** Layout: uint32 n, uint32 hasSigma, then float64 x[n], float32 min[n], max[n], and lower[n], upper[n] if hasSigma. */
+/** uint32 n, uint32 kind, float64 x[n], float32 arrays of n: 0 min, max; 1 and lower, upper; 2 value; 3 value, sigma. */
 export async function getSeries(id: string, from?: number, to?: number, buckets?: number): Promise<Series> {
   const query = new URLSearchParams();
   if (from !== undefined) query.set('from', String(from));
@@ -48,16 +48,23 @@ export async function getSeries(id: string, from?: number, to?: number, buckets?
   if (buckets !== undefined) query.set('buckets', String(buckets));
   const suffix = query.size > 0 ? `?${query}` : '';
   const buffer = await (await request(`api/series/${encodeURIComponent(id)}${suffix}`)).arrayBuffer();
-  const head = new Uint32Array(buffer, 0, 2);
-  const n = head[0];
+  const [n, kind] = new Uint32Array(buffer, 0, 2);
   const floats = (index: number) => new Float32Array(buffer, 8 + 8 * n + 4 * n * index, n);
-  return {
-    x: new Float64Array(buffer, 8, n),
-    min: floats(0),
-    max: floats(1),
-    lower: head[1] ? floats(2) : null,
-    upper: head[1] ? floats(3) : null,
-  };
+  const x = new Float64Array(buffer, 8, n);
+  if (kind < 2) return { x, min: floats(0), max: floats(1), lower: kind ? floats(2) : null, upper: kind ? floats(3) : null };
+  const value = floats(0);
+  if (kind === 2) return { x, min: value, max: value, lower: null, upper: null };
+  const sigma = floats(1);
+  const bound = (sign: number) => Float32Array.from(value, (v, i) => v + sign * 1.96 * sigma[i]);
+  return { x, min: value, max: value, lower: bound(-1), upper: bound(1), sigma };
+}
+
+export async function getMarks(): Promise<unknown[]> {
+  return (await request('api/marks')).json();
+}
+
+export async function putMarks(marks: unknown[]): Promise<void> {
+  await request('api/marks', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(marks) });
 }
 
 /** Writes the reviewer's constraints beside the result; the result itself is never changed. */
@@ -71,6 +78,6 @@ export async function putConstraints(body: unknown): Promise<void> {
 
 /** Opens the report in a tab of its own. A link could not send the token, so the page fetches it. */
 export async function openReport(): Promise<void> {
-  const text = await getText('api/report');
+  const text = await (await request('api/report')).text();
   open(URL.createObjectURL(new Blob([text], { type: 'text/html' })), '_blank');
 }

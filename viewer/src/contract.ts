@@ -5,32 +5,49 @@ export type LimitClass = 'AL' | 'IL' | 'IAL';
 
 /** GET /api/result */
 export interface Result {
-  kind: 'survey' | 'georef';
+  kind: 'survey' | 'georef' | 'waiting'; // waiting: a job is running that has no result yet
   title: string; // line and track, or the folder's name
   subtitle: string; // length, speed, time of day
+  folder: string;
   version: string; // of the program that wrote the result
+  started: string; // UTC
   crs: string; // definition of the project CRS; easting and northing below are its metres
-  running: boolean; // the job is still writing
-  progress?: { stage: string; fraction: number };
   report: boolean; // report.html lies in the result
   verdict: Verdict;
   survey?: Survey;
   georef?: Georef;
+  failure?: string; // why there is nothing to see
   warnings: string[];
   findings: Finding[];
-  rejections: Rejection[];
+  rejections: Rejection[]; // the first 500
+  rejected: number; // all of them
+}
+
+/** GET /api/progress: whether a job is writing this result, and which generation of the result the server has open. */
+export interface Progress {
+  running: boolean;
+  generation: number;
+  opened: boolean;
+  failure: string;
+  stage?: string;
+  fraction?: number;
+  seconds?: number;
+  stages?: { stage: string; seconds: number }[];
+  notes?: string[];
 }
 
 export interface Verdict {
   accepted: boolean | null; // null: nothing was judged
-  text: string; // "NOT ACCEPTED 1 IAL 7 IL 2 AL"
+  text: string; // "NOT ACCEPTED · 1 IAL · 7 IL"
+  profile?: string; // of the limits
+  source?: string;
 }
 
+/** As in run.json. */
 export interface Finding {
   sensor: string;
   kind: string;
-  from: number; // s from the start of the run
-  to: number;
+  from: string;
   count: number;
   action: string;
   detail: string;
@@ -38,20 +55,24 @@ export interface Finding {
 
 export interface Rejection {
   sensor: string;
-  time: number; // s from the start of the run
+  time_s: string;
   reason: string;
   normalized: number | null;
 }
 
 export interface Survey {
-  x: { from: number; to: number; count: number; step: number }; // continuous track distance, m
+  axis: 'mileage' | 'time'; // what x is: continuous track distance in m, or seconds from `origin`
+  origin?: string;
+  x: { from: number; to: number; count: number; step: number };
   chainage: ChainagePiece[];
+  tabs: { id: string; title: string }[];
   strips: StripInfo[];
   plan: Polyline[]; // track axis in the project CRS
   exceedances: Exceedance[];
   controlPoints: ControlPoint[];
   packUp: PackUpItem[];
-  compare?: string; // title of the run that is compared
+  conventions?: Record<string, string>;
+  compare?: string; // title of the run that is subtracted
 }
 
 /** Posted kilometre on a piece of continuous distance: km = posted + sign * (x - from). */
@@ -63,47 +84,57 @@ export interface ChainagePiece {
 }
 
 export interface StripInfo {
-  id: string; // as in /api/series/{id} and as the column of geometry.csv
+  id: string; // as in /api/series/{id}, and the column of geometry.csv
   title: string; // "Level left"
   note: string; // "D1, 3-25 m"
   unit: string; // "mm"
-  positive: string; // sign convention: "positive: to the left"
+  positive: string; // sign convention: "+ up"
   digits: number;
-  tab: 'strips' | 'versines' | 'difference' | 'adjustment';
+  tab: string;
+  count: number; // of samples
   sigma: boolean;
-  limits: { class: LimitClass; low: number | null; high: number | null }[];
+  limits: { level: string; class: LimitClass; low: number | null; high: number | null }[];
+  companion?: { id: string; title: string; unit: string; digits: number }; // drawn dashed, on a scale of its own
 }
 
 export interface Polyline {
-  id: string;
-  x: number[]; // continuous distance of each vertex, m
+  x: number[]; // of each vertex
   easting: number[];
   northing: number[];
+  latitude?: number[]; // deg, WGS84
+  longitude?: number[];
 }
 
 export interface Exceedance {
   strip: string;
   title: string;
-  class: LimitClass;
+  note: string;
+  level: string; // as the profile of limits names it
+  class: LimitClass; // how it is drawn
   start: number; // continuous distance, m
   end: number;
   peakAt: number;
   peak: number;
+  limit: number;
   sigma: number | null;
   probability: number | null; // that the limit is exceeded
+  digits: number;
   unit: string;
 }
 
+/** A control point as the forward pass met it: prediction against measurement, before it was used. */
 export interface ControlPoint {
   name: string;
   x: number;
-  residual: [number, number, number]; // mm: along, across, up
-  sigma: [number, number, number];
+  time: number; // s
+  innovation: [number | null, number | null, number | null]; // mm: north, east, down
+  sigma: [number | null, number | null, number | null];
+  nis: number | null;
   used: boolean;
 }
 
 export interface PackUpItem {
-  name: string; // "gaps", "missing control points", "closure", "forward/backward"
+  name: string; // "gaps in the trajectory", "control points"
   good: boolean;
   text: string;
 }
@@ -140,11 +171,16 @@ export interface Stretch {
   evidence: string;
 }
 
-/** GET /api/series/{id}?from&to&buckets: float64 x, float32 min, max, lower, upper a bucket; NaN where nothing was measured. */
+/** GET /api/series/{id}?from&to&buckets: samples where few enough lie there (min and max are then the same array), else
+ * buckets; NaN where nothing was measured. */
 export interface Series {
   x: Float64Array;
   min: Float32Array;
   max: Float32Array;
   lower: Float32Array | null; // value - 1.96 sigma, smallest in the bucket
   upper: Float32Array | null;
+  sigma?: Float32Array; // of samples
 }
+
+/** GET /api/values?x: value and sigma of each series that has been looked at. */
+export type Values = Record<string, [number | null, number | null]>;

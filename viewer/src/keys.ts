@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+import { openDialog } from './dialogs';
 import { element } from './text';
 
 type Handlers = Record<string, (shift: boolean) => unknown>;
 
 /** Keys work wherever the focus is, but not while a person types or a dialog is open. */
-export function bindKeys(handlers: Handlers): void {
+export function bindKeys(signal: AbortSignal, handlers: Handlers): void {
   addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || document.querySelector('dialog[open]')) return;
     if (event.target instanceof HTMLInputElement || event.target instanceof HTMLTextAreaElement) return;
@@ -13,7 +14,7 @@ export function bindKeys(handlers: Handlers): void {
     if (!handler) return;
     event.preventDefault();
     handler(event.shiftKey);
-  });
+  }, { signal });
 }
 
 const help: [string, string][] = [
@@ -27,7 +28,7 @@ const help: [string, string][] = [
   ['G', 'go to a kilometre'],
   ['M', 'mark this place'],
   ['D', 'theme: dark, light, dim red'],
-  ['E C', 'export what is seen as PNG or CSV'],
+  ['E', 'export what is seen: PNG, CSV, PDF; faults and marks as GPX'],
   ['P', 'open the report'],
   ['1–9 Enter U', 'georeferencing: choose a path, confirm, undo'],
   ['T', 'georeferencing: time or distance'],
@@ -35,13 +36,9 @@ const help: [string, string][] = [
 ];
 
 export function showHelp(): void {
-  const dialog = element('dialog', { 'aria-label': 'Keys' });
   const list = element('dl');
   for (const [key, what] of help) list.append(element('dt', {}, key), element('dd', {}, what));
   const form = element('form', { method: 'dialog' });
   form.append(element('button', { type: 'submit' }, 'Close'));
-  dialog.append(element('h2', {}, 'Keys'), list, form);
-  dialog.addEventListener('close', () => dialog.remove());
-  document.body.append(dialog);
-  dialog.showModal();
+  openDialog('Keys', element('h2', {}, 'Keys'), list, form);
 }

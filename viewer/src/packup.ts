@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Result, Survey } from './contract';
+import type { PackUpItem } from './contract';
 import { element } from './text';
 
 /** "Can I pack up?": what must be right before the possession ends. */
-export function packUpPanel(survey: Survey, result: Result): HTMLElement {
-  const panel = element('section', { class: 'packup', 'aria-label': 'Can I pack up?' });
-  if (survey.packUp.length === 0) {
+export function packUpPanel(items: PackUpItem[]): HTMLElement {
+  const panel = element('details', { class: 'packup' });
+  if (items.length === 0) {
     panel.hidden = true;
     return panel;
   }
-  const good = !result.running && survey.packUp.every((item) => item.good);
-  const verdict = result.running ? 'still running' : good ? 'yes' : 'not yet';
-  panel.append(element('h2', { class: good ? 'good' : 'bad' }, `Can I pack up? ${verdict}`));
+  const bad = items.filter((item) => !item.good);
+  const good = bad.length === 0;
+  panel.open = !good;
+  const summary = element('summary');
+  summary.append(element('h2', { class: good ? 'good' : 'bad' }, `Can I pack up? ${good ? '✓ yes' : `✗ look at ${bad.length} of ${items.length}`}`));
   const list = element('ul');
-  for (const item of survey.packUp) {
+  for (const item of [...bad, ...items.filter((i) => i.good)]) {
     list.append(element('li', { class: item.good ? 'good' : 'bad' }, `${item.good ? '✓' : '✗'} ${item.name}: ${item.text}`));
   }
-  panel.append(list);
+  panel.append(summary, list);
   return panel;
 }

@@ -59,34 +59,37 @@ function slice(series: Series, from: number, to: number): Series {
   };
 }
 
-/** One strip's values at every zoom. */
+/** One strip's values at every zoom: from the server at first, from memory as soon as all samples have come. */
 export class SeriesStore {
   private levels: Series[] = [];
+  private loading: Promise<void> | null = null;
 
   constructor(
     readonly id: string,
-    private readonly count: number,
+    readonly count: number,
   ) {}
 
-  get whole(): boolean {
-    return this.count <= clientLimit;
+  get loaded(): boolean {
+    return this.levels.length > 0;
   }
 
-  async load(): Promise<void> {
-    if (!this.whole) return;
-    this.levels = [await getSeries(this.id)];
-    while (this.levels[this.levels.length - 1].x.length > maxBuckets) {
-      this.levels.push(reduce(this.levels[this.levels.length - 1]));
-    }
+  /** Fetches every sample, unless there are too many to hold. */
+  load(): Promise<void> {
+    if (this.count > clientLimit) return Promise.resolve();
+    this.loading ??= getSeries(this.id).then((samples) => {
+      const levels = [samples];
+      while (levels[levels.length - 1].x.length > maxBuckets) levels.push(reduce(levels[levels.length - 1]));
+      this.levels = levels;
+    });
+    return this.loading;
   }
 
-  /** What to draw between two distances: at most about 2,400 buckets, or the samples themselves. */
-  async view(from: number, to: number): Promise<Series> {
-    if (!this.whole) return getSeries(this.id, from, to, maxBuckets);
-    return this.viewNow(from, to);
+  /** What to draw between two places: at most 2,400 buckets, or the samples themselves. */
+  fetch(from: number, to: number): Promise<Series> {
+    return getSeries(this.id, from, to, maxBuckets);
   }
 
-  viewNow(from: number, to: number): Series {
+  now(from: number, to: number): Series {
     for (const level of this.levels) {
       const part = slice(level, from, to);
       if (part.x.length <= maxBuckets) return part;
@@ -94,17 +97,19 @@ export class SeriesStore {
     return slice(this.levels[this.levels.length - 1], from, to);
   }
 
-  /** The sample nearest to a distance: value and half width of its 95 % interval. Only of a whole store. */
-  at(x: number): { value: number; half: number } | null {
+  /** The sample nearest to a place. Only of a loaded store. */
+  at(x: number): { value: number; sigma: number } | null {
     const s = this.levels[0];
     if (!s || s.x.length === 0) return null;
     let i = Math.min(lowerBound(s.x, x), s.x.length - 1);
     if (i > 0 && x - s.x[i - 1] < s.x[i] - x) i -= 1;
-    const half = s.lower && s.upper ? (s.upper[i] - s.lower[i]) / 2 : NaN;
-    return { value: s.min[i], half };
+    return { value: s.min[i], sigma: s.sigma ? s.sigma[i] : NaN };
   }
 
-  samples(from: number, to: number): Series {
-    return slice(this.levels[0], from, to);
+  /** Samples from one place to another, both included. */
+  async samples(from: number, to: number): Promise<Series> {
+    const all = this.loaded ? this.levels[0] : await getSeries(this.id, from, to, 0);
+    const [a, b] = [lowerBound(all.x, from), lowerBound(all.x, to + 1e-9)];
+    return { x: all.x.subarray(a, b), min: all.min.subarray(a, b), max: all.max.subarray(a, b), lower: null, upper: null, sigma: all.sigma?.subarray(a, b) };
   }
 }

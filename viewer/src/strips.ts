@@ -1,14 +1,49 @@
 // SPDX-License-Identifier: Apache-2.0
 import uPlot from 'uplot';
-import type { Chainage } from './chainage';
-import type { Exceedance, StripInfo } from './contract';
-import type { SeriesStore } from './pyramid';
-import { css, limitStyle } from './theme';
+import type { Axis } from './axis';
+import type { Exceedance, Series, StripInfo } from './contract';
+import { lowerBound, type SeriesStore } from './pyramid';
 import { minus } from './text';
+import { css, limitStyle } from './theme';
 
 export interface StripEvents {
-  cursor(x: number | null): void;
+  cursor(x: number): void;
   zoom(from: number, to: number): void;
+}
+
+export const labelWidth = 172;
+export const valueWidth = 116;
+export const scaleWidth = 44;
+const axisHeight = 26;
+
+/** A value at the cursor, with its standard deviation or NaN. */
+export interface Reading {
+  value: number;
+  sigma: number;
+}
+
+/** What a strip draws besides its own series. */
+export interface Extras {
+  compare: SeriesStore | null; // another run's values on the same scale
+  companion: SeriesStore | null; // another quantity on its own scale
+}
+
+const column = (a: Float32Array | null, n: number): (number | null)[] => {
+  const out = new Array<number | null>(n);
+  // uPlot's sign for a gap is null; NaN would be bridged.
+  for (let i = 0; i < n; ++i) out[i] = a !== null && a[i] === a[i] ? a[i] : null;
+  return out;
+};
+
+/** The other series' values at this one's places; null where it has none near. */
+function sampled(other: Series | null, x: Float64Array, near: number): (number | null)[] {
+  const out = new Array<number | null>(x.length).fill(null);
+  if (!other) return out;
+  for (let i = 0; i < x.length; ++i) {
+    const k = Math.min(lowerBound(other.x, x[i]), other.x.length - 1);
+    if (k >= 0 && Math.abs(other.x[k] - x[i]) <= near && other.min[k] === other.min[k]) out[i] = other.min[k];
+  }
+  return out;
 }
 
 /** One line of the strip chart: label on the left, drawing, value at the cursor on the right. */
@@ -19,18 +54,19 @@ export class Strip {
   private readonly box: HTMLElement;
   private plot: uPlot | null = null;
   private limitsScale = false;
-  private busy = 0;
+  private turn = 0;
 
   constructor(
     readonly info: StripInfo,
     readonly store: SeriesStore,
-    private readonly other: SeriesStore | null,
-    private readonly chainage: Chainage,
+    private readonly extras: Extras,
+    private readonly axis: Axis,
     private readonly exceedances: Exceedance[],
     private readonly events: StripEvents,
   ) {
     this.element = document.createElement('section');
     this.element.className = 'strip';
+    this.element.dataset.strip = info.id;
     this.element.setAttribute('aria-label', `${info.title}, ${info.note}, ${info.unit}, ${info.positive}`);
     this.element.innerHTML = `
       <div class="strip-label"><b></b><span></span><span></span></div>
@@ -45,65 +81,75 @@ export class Strip {
     this.half = this.element.querySelector('.strip-value span')!;
   }
 
+  get stores(): SeriesStore[] {
+    return [this.store, this.extras.compare, this.extras.companion].filter((s) => s !== null);
+  }
+
   /** Makes the chart anew: at the start, on resize and when the theme changes. */
   build(width: number, height: number, from: number, to: number, last: boolean): void {
     this.plot?.destroy();
-    const line = css('--line');
-    const axis = { stroke: css('--muted'), font: '11px system-ui, sans-serif' };
-    const hidden = { stroke: 'transparent', points: { show: false }, width: 0 };
-    const drawn = { stroke: line, points: { show: false }, width: 1, spanGaps: false };
-    const compared = { stroke: css('--compare'), points: { show: false }, width: 1, dash: [4, 3] };
-    this.plot = new uPlot(
-      {
-        width,
-        height: height + (last ? 26 : 0),
-        padding: [2, 0, 2, 0],
-        legend: { show: false },
-        cursor: {
-          y: false,
-          drag: { x: true, y: false, setScale: false },
-          sync: { key: 'versine', setSeries: false },
-          points: { show: false },
-        },
-        scales: { x: { time: false, min: from, max: to }, y: { range: (_u, low, high) => this.range(low, high) } },
-        series: [{}, hidden, hidden, drawn, drawn, compared],
-        bands: [
-          { series: [2, 1], fill: css('--band') },
-          { series: [4, 3], fill: line },
-        ],
-        axes: [
-          last
-            ? { ...axis, size: 26, grid: { stroke: css('--grid') }, ticks: { show: false }, space: 110, values: (_u, v) => v.map((x) => this.chainage.text(x)) }
-            : { show: false },
-          { ...axis, size: 44, gap: 4, space: 18, grid: { stroke: css('--grid'), width: 1 }, ticks: { size: 4, stroke: css('--grid') }, values: (_u, v) => v.map((y) => minus(y)) },
-        ],
-        hooks: {
-          drawClear: [(u) => this.drawLimits(u)],
-          draw: [(u) => this.drawMarks(u)],
-          setCursor: [(u) => u.cursor.event && this.events.cursor(u.cursor.left! < 0 ? null : u.posToVal(u.cursor.left!, 'x'))],
-          setSelect: [
-            (u) => {
-              if (u.select.width < 4) return;
-              this.events.zoom(u.posToVal(u.select.left, 'x'), u.posToVal(u.select.left + u.select.width, 'x'));
-              u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
-            },
-          ],
-        },
-      },
-      [[], [], [], [], [], []] as unknown as uPlot.AlignedData,
-      this.box,
-    );
+    this.element.style.height = `${height + (last ? axisHeight : 0)}px`;
+    this.plot = new uPlot(this.options(width, height + (last ? axisHeight : 0) - 1, from, to, last), [[], [], [], [], [], [], []] as unknown as uPlot.AlignedData, this.box);
   }
 
+  private options(width: number, height: number, from: number, to: number, last: boolean): uPlot.Options {
+    const line = css('--line');
+    const bare = { points: { show: false }, spanGaps: false };
+    const hidden = { ...bare, stroke: 'transparent', width: 0 };
+    const drawn = { ...bare, stroke: line, width: 1 };
+    const ticks = { stroke: css('--muted'), font: '12px system-ui, sans-serif', ticks: { show: false } };
+    const grid = { stroke: css('--grid'), width: 1 };
+    return {
+      width,
+      height,
+      padding: [3, 8, 3, 0],
+      legend: { show: false },
+      cursor: { y: false, drag: { x: true, y: false, setScale: false }, points: { show: false } },
+      scales: {
+        x: { time: false, min: from, max: to },
+        y: { range: (_u, low, high) => this.range(low, high) },
+        other: { range: (_u, low, high) => padded(low ?? -1, high ?? 1, 1) },
+      },
+      series: [{}, hidden, hidden, drawn, drawn, { ...bare, stroke: css('--compare'), width: 1, dash: [4, 3] }, { ...bare, scale: 'other', stroke: css('--companion'), width: 1, dash: [6, 3] }],
+      bands: [
+        { series: [2, 1], fill: css('--band') },
+        { series: [4, 3], fill: line },
+      ],
+      axes: [
+        {
+          ...ticks,
+          size: last ? axisHeight : 0,
+          gap: 6,
+          grid,
+          splits: (_u, _i, low, high) => this.axis.ticks(low, high, ((high - low) * 110) / Math.max(width, 1)),
+          values: (_u, v) => v.map((x) => (last ? this.axis.text(x, tickDigits(v)) : '')),
+        },
+        { ...ticks, size: scaleWidth, gap: 6, space: 16, grid, values: (_u, v) => v.map((y) => minus(y)) },
+      ],
+      hooks: {
+        drawClear: [(u) => this.drawLimits(u)],
+        draw: [(u) => this.drawMarks(u)],
+        setCursor: [(u) => u.cursor.event && u.cursor.left! >= 0 && this.events.cursor(u.posToVal(u.cursor.left!, 'x'))],
+        setSelect: [
+          (u) => {
+            if (u.select.width < 4) return;
+            this.events.zoom(u.posToVal(u.select.left, 'x'), u.posToVal(u.select.left + u.select.width, 'x'));
+            u.setSelect({ left: 0, top: 0, width: 0, height: 0 }, false);
+          },
+        ],
+      },
+    };
+  }
+
+  /** Draws a stretch: at once from memory, else when the server has answered, the latest question alone. */
   async show(from: number, to: number): Promise<void> {
-    if (!this.plot) return;
-    if (this.store.whole && (this.other === null || this.other.whole)) {
-      this.set(this.store.viewNow(from, to), this.other?.viewNow(from, to) ?? null, from, to);
+    const turn = ++this.turn;
+    if (this.stores.every((s) => s.loaded)) {
+      this.set(this.store.now(from, to), this.extras.compare?.now(from, to) ?? null, this.extras.companion?.now(from, to) ?? null, from, to);
       return;
     }
-    const turn = ++this.busy;
-    const [mine, theirs] = await Promise.all([this.store.view(from, to), this.other?.view(from, to) ?? null]);
-    if (turn === this.busy) this.set(mine, theirs, from, to);
+    const [mine, compare, companion] = await Promise.all([this.store, this.extras.compare, this.extras.companion].map((s) => s?.fetch(from, to) ?? null));
+    if (turn === this.turn) this.set(mine!, compare, companion, from, to);
   }
 
   setLimitsScale(on: boolean): void {
@@ -111,10 +157,10 @@ export class Strip {
     this.plot?.redraw(true, true);
   }
 
-  /** A line for the cursor, and the value beside the strip with its 95 % interval and the limit it is over. */
-  showCursor(x: number | null): string {
-    const at = x === null ? null : this.store.at(x);
-    if (!at || !Number.isFinite(at.value)) {
+  /** The value beside the strip with its 95 % interval and the limit it is over; returns what to say. */
+  showReading(reading: Reading | null, companion: Reading | null): string {
+    const { digits, unit, title } = this.info;
+    if (!reading || !Number.isFinite(reading.value)) {
       this.value.textContent = '–';
       this.half.textContent = '';
       this.value.className = '';
@@ -122,19 +168,30 @@ export class Strip {
     }
     const over = [...this.info.limits]
       .reverse()
-      .find((l) => (l.high !== null && at.value > l.high) || (l.low !== null && at.value < l.low));
-    const number = minus(at.value, this.info.digits);
-    const half = Number.isFinite(at.half) ? `± ${at.half.toFixed(this.info.digits)} ${this.info.unit}` : this.info.unit;
+      .find((l) => (l.high !== null && reading.value > l.high) || (l.low !== null && reading.value < l.low));
+    // Where the 95 % interval is finer than the last digit, one digit more.
+    const half = 1.96 * reading.sigma;
+    const places = digits + (half < 0.6 * 10 ** -digits ? 1 : 0);
+    const number = minus(reading.value, places);
+    const interval = Number.isFinite(half) ? `± ${half.toFixed(places)} ${unit}` : unit;
+    let second = interval;
     this.value.textContent = over ? `${limitStyle[over.class].glyph} ${number}` : number;
+    this.value.title = `${reading.value} ${unit}${Number.isFinite(reading.sigma) ? `, sigma ${reading.sigma}` : ''}`;
     this.value.className = over ? `over-${over.class}` : '';
-    this.half.textContent = half;
-    return `${this.info.title} ${number} ${half}${over ? `, over the ${limitStyle[over.class].name}` : ''}`;
+    if (this.info.companion && companion) {
+      const radius = 1000 / Math.abs(reading.value);
+      this.value.textContent = Math.abs(reading.value) < 2 * half || radius > 30000 ? 'straight' : `R ${Math.round(radius)} ${reading.value > 0 ? 'right' : 'left'}`;
+      second = `${this.info.companion.title} ${minus(companion.value, 0)} ${this.info.companion.unit}`;
+    }
+    this.half.textContent = second;
+    return `${title} ${number} ${interval}${over ? `, over the ${over.level}` : ''}`;
   }
 
-  /** Puts the crosshair at a distance without the mouse. */
-  moveCursor(x: number | null): void {
+  /** Puts the crosshair at a place without the mouse. */
+  moveCursor(x: number): void {
     if (!this.plot) return;
-    this.plot.setCursor({ left: x === null ? -10 : this.plot.valToPos(x, 'x'), top: 4 }, false);
+    const left = this.plot.valToPos(x, 'x');
+    this.plot.setCursor({ left: left >= 0 && left <= this.plot.over.clientWidth ? left : -10, top: 4 }, false);
   }
 
   get canvas(): HTMLCanvasElement | null {
@@ -146,45 +203,36 @@ export class Strip {
     this.plot = null;
   }
 
-  private set(mine: { x: Float64Array; min: Float32Array; max: Float32Array; lower: Float32Array | null; upper: Float32Array | null }, theirs: { x: Float64Array; min: Float32Array } | null, from: number, to: number): void {
-    const empty = new Float32Array(mine.x.length).fill(NaN);
-    const nulls = (a: ArrayLike<number>) => Array.from(a, (v) => (Number.isFinite(v) ? v : null));
-    let compared: (number | null)[] = nulls(empty);
-    if (theirs) {
-      // The other run has places of its own: take its value at or before each of ours.
-      let k = 0;
-      compared = Array.from(mine.x, (x) => {
-        while (k + 1 < theirs.x.length && theirs.x[k + 1] <= x) ++k;
-        const v = theirs.min[k];
-        return Number.isFinite(v) && Math.abs(theirs.x[k] - x) < (to - from) / 200 ? v : null;
-      });
-    }
-    const single = mine.min === mine.max || mine.x.length < 2;
-    this.plot!.batch(() => {
-      this.plot!.setData(
-        [Array.from(mine.x), nulls(mine.lower ?? empty), nulls(mine.upper ?? empty), nulls(mine.min), single ? nulls(mine.min) : nulls(mine.max), compared] as uPlot.AlignedData,
-        false,
-      );
+  private set(mine: Series, compare: Series | null, companion: Series | null, from: number, to: number): void {
+    if (!this.plot) return;
+    const n = mine.x.length;
+    const low = column(mine.min, n);
+    const near = n > 1 ? (mine.x[n - 1] - mine.x[0]) / (n - 1) : 1;
+    const data = [mine.x, column(mine.lower, n), column(mine.upper, n), low, mine.min === mine.max ? low : column(mine.max, n), sampled(compare, mine.x, near), sampled(companion, mine.x, near)];
+    this.plot.batch(() => {
+      this.plot!.setData(data as unknown as uPlot.AlignedData, false);
       this.plot!.setScale('x', { min: from, max: to });
     });
   }
 
   private range(low: number | null, high: number | null): [number, number] {
-    let a = low ?? -1;
-    let b = high ?? 1;
+    let a = low ?? 0;
+    let b = high ?? 0;
+    // Noise is not blown up to look like a fault: at least a few times the last digit shown.
+    const least = 20 * 10 ** -this.info.digits;
     if (this.limitsScale) {
       for (const limit of this.info.limits) {
         if (limit.low !== null) a = Math.min(a, limit.low);
         if (limit.high !== null) b = Math.max(b, limit.high);
       }
     }
-    if (!(b > a)) [a, b] = [a - 1, b + 1];
-    const margin = 0.08 * (b - a);
-    return [a - margin, b + margin];
+    return padded(a, b, least);
   }
 
   private drawLimits(u: uPlot): void {
     const { ctx, bbox } = u;
+    const { min, max } = u.scales.y;
+    if (min === undefined || min === null || max === undefined || max === null) return;
     ctx.save();
     ctx.beginPath();
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
@@ -192,11 +240,13 @@ export class Strip {
     for (const limit of this.info.limits) {
       const style = limitStyle[limit.class];
       ctx.strokeStyle = css(style.color);
+      ctx.fillStyle = css(`${style.color}-zone`);
       ctx.lineWidth = devicePixelRatio;
       ctx.setLineDash(style.dash.map((d) => d * devicePixelRatio));
-      for (const y of [limit.low, limit.high]) {
-        if (y === null) continue;
-        const at = Math.round(u.valToPos(y, 'y', true));
+      for (const [value, outward] of [[limit.low, bbox.top + bbox.height], [limit.high, bbox.top]] as const) {
+        if (value === null || value < min || value > max) continue;
+        const at = Math.round(u.valToPos(value, 'y', true)) + 0.5;
+        ctx.fillRect(bbox.left, Math.min(at, outward), bbox.width, Math.abs(outward - at));
         ctx.beginPath();
         ctx.moveTo(bbox.left, at);
         ctx.lineTo(bbox.left + bbox.width, at);
@@ -212,7 +262,8 @@ export class Strip {
     ctx.save();
     ctx.strokeStyle = css('--muted');
     ctx.lineWidth = devicePixelRatio;
-    for (const jump of this.chainage.jumps()) {
+    ctx.setLineDash([2 * devicePixelRatio, 2 * devicePixelRatio]);
+    for (const jump of this.axis.jumps()) {
       if (jump.x < from || jump.x > to) continue;
       for (const offset of [-1.5, 1.5]) {
         const x = u.valToPos(jump.x, 'x', true) + offset * devicePixelRatio;
@@ -222,15 +273,31 @@ export class Strip {
         ctx.stroke();
       }
     }
-    ctx.font = `${11 * devicePixelRatio}px system-ui, sans-serif`;
+    ctx.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
     ctx.textAlign = 'center';
     ctx.textBaseline = 'middle';
     for (const e of this.exceedances) {
       if (e.peakAt < from || e.peakAt > to) continue;
       ctx.fillStyle = css(limitStyle[e.class].color);
-      const y = Math.min(Math.max(u.valToPos(e.peak, 'y', true), bbox.top + 5), bbox.top + bbox.height - 5);
+      const y = Math.min(Math.max(u.valToPos(e.peak, 'y', true), bbox.top + 6 * devicePixelRatio), bbox.top + bbox.height - 6 * devicePixelRatio);
       ctx.fillText(limitStyle[e.class].glyph, u.valToPos(e.peakAt, 'x', true), y);
     }
     ctx.restore();
   }
+}
+
+function padded(low: number, high: number, least: number): [number, number] {
+  let [a, b] = [low, high];
+  if (!(b - a >= least)) {
+    const middle = (a + b) / 2;
+    [a, b] = [middle - least / 2, middle + least / 2];
+  }
+  const margin = 0.08 * (b - a);
+  return [a - margin, b + margin];
+}
+
+/** Ticks a metre or more apart need no decimals. */
+function tickDigits(ticks: number[]): number {
+  const step = ticks.length > 1 ? ticks[1] - ticks[0] : 1;
+  return step < 0.95 ? 1 : 0;
 }

@@ -1,81 +1,101 @@
 // SPDX-License-Identifier: Apache-2.0
-import { openReport } from './api';
+import { getValues, openReport } from './api';
+import { TimeAxis, type Axis } from './axis';
 import { Chainage } from './chainage';
-import type { Result, StripInfo, Survey } from './contract';
+import type { Result, StripInfo, Survey, Values } from './contract';
+import { askPlace } from './dialogs';
 import { ExceedanceTable } from './exceedances';
-import { exportCsv, exportPng } from './export';
+import { showExports } from './export';
+import { header } from './header';
 import { bindKeys, showHelp } from './keys';
 import { Marks } from './marks';
 import { Overview } from './overview';
 import { packUpPanel } from './packup';
+import { panels } from './panels';
 import { Plan } from './plan';
 import { SeriesStore } from './pyramid';
-import { Strip } from './strips';
-import { element, speak } from './text';
+import type { Screen } from './screen';
+import { labelWidth, scaleWidth, Strip, valueWidth, type Reading } from './strips';
+import { element, minus, speak } from './text';
 import { nextTheme } from './theme';
 import { View } from './view';
 
-const tabs: { id: StripInfo['tab']; title: string }[] = [
-  { id: 'strips', title: 'Strips' },
-  { id: 'versines', title: 'Versines and checks' },
-  { id: 'difference', title: 'Forward / backward' },
-  { id: 'adjustment', title: 'Adjustment' },
-];
+const leastHeight = 50; // px of a strip; more strips than fit are scrolled
 
 /** The screen of a survey: plan and faults on the left, strips in the middle, values on the right. */
-export class SurveyScreen {
+export class SurveyScreen implements Screen {
   private readonly survey: Survey;
-  private readonly chainage: Chainage;
+  private readonly axis: Axis;
   private readonly view: View;
-  private readonly strips: Strip[];
   private readonly stores = new Map<string, SeriesStore>();
+  private readonly strips: Strip[];
   private readonly plan: Plan;
   private readonly overview: Overview;
   private readonly table: ExceedanceTable;
   private readonly marks: Marks;
   private readonly readout = element('output', { class: 'km', 'aria-label': 'Place of the cursor' });
-  private readonly centre = element('div', { class: 'strips' });
-  private tab: StripInfo['tab'] = 'strips';
-  private limitsScale = false;
+  private readonly centre = element('div', { class: 'strips', id: 'strips', role: 'tabpanel', tabindex: '0', 'aria-label': 'Strips' });
+  private readonly bar = element('div', { role: 'tablist', class: 'tabs', 'aria-label': 'What is shown' });
+  private readonly release = new AbortController(); // of every listener outside our own elements
+  private readonly resized = new ResizeObserver(() => this.rebuild());
+  private tab: string;
+  private limitsScale = true;
   private pending = 0;
+  private asked = 0;
 
   constructor(
     private readonly root: HTMLElement,
     private readonly result: Result,
   ) {
-    this.survey = result.survey!;
-    this.chainage = new Chainage(this.survey.chainage);
-    this.view = new View(this.survey.x.from, this.survey.x.to);
+    const survey = (this.survey = result.survey!);
+    this.axis = survey.axis === 'time' ? new TimeAxis() : new Chainage(survey.chainage);
+    this.view = new View(survey.x.from, survey.x.to, this.release.signal);
+    this.tab = survey.compare ? 'difference' : (survey.tabs[0]?.id ?? 'notes');
+    this.strips = survey.strips.map((info) => this.strip(info));
+    this.plan = new Plan(survey, result.crs, (x) => this.view.goTo(x));
+    this.overview = new Overview(this.view, this.axis, survey.exceedances, survey.controlPoints);
+    this.table = new ExceedanceTable(survey.exceedances, this.axis, (e) => {
+      this.openTab(this.strips.find((s) => s.info.id === e.strip)?.info.tab ?? this.tab);
+      this.view.goTo(e.peakAt, Math.min(this.view.to - this.view.from, 400));
+      speak(`${e.level}, ${e.title}, ${this.axis.readout(e.peakAt)}, ${minus(e.peak, e.digits)} ${e.unit}`);
+    });
+    this.marks = new Marks(result.title, this.axis, (x) => this.view.goTo(x));
+  }
+
+  private strip(info: StripInfo): Strip {
     const store = (id: string) => {
-      if (!this.stores.has(id)) this.stores.set(id, new SeriesStore(id, this.survey.x.count));
+      if (!this.stores.has(id)) this.stores.set(id, new SeriesStore(id, info.count));
       return this.stores.get(id)!;
     };
-    this.strips = this.survey.strips.map(
-      (info) =>
-        new Strip(info, store(info.id), this.survey.compare ? store(`compare:${info.id}`) : null, this.chainage, this.survey.exceedances.filter((e) => e.strip === info.id), {
-          cursor: (x) => x !== null && this.view.moveCursor(x),
-          zoom: (from, to) => this.view.zoom(from, to),
-        }),
+    const compared = this.survey.compare !== undefined && info.tab !== 'difference' && info.tab !== 'adjustment';
+    return new Strip(
+      info,
+      store(info.id),
+      { compare: compared ? store(`compare:${info.id}`) : null, companion: info.companion ? store(info.companion.id) : null },
+      this.axis,
+      this.survey.exceedances.filter((e) => e.strip === info.id),
+      { cursor: (x) => this.view.moveCursor(x), zoom: (from, to) => this.view.zoom(from, to) },
     );
-    this.plan = new Plan(this.survey.plan, this.survey.exceedances, this.survey.controlPoints, result.crs, (x) => this.view.goTo(x));
-    this.overview = new Overview(this.view, this.chainage, this.survey.exceedances);
-    this.table = new ExceedanceTable(this.survey.exceedances, this.chainage, (e) => {
-      this.view.goTo(e.peakAt);
-      speak(`${e.class}, ${e.title}, ${this.chainage.text(e.peakAt)}, ${e.peak.toFixed(1)} ${e.unit}`);
-    });
-    this.marks = new Marks(result.title, this.chainage);
   }
 
   async start(): Promise<void> {
     this.layout();
-    await Promise.all(this.visible().map((s) => s.store.load()));
-    await Promise.all(this.visible().map((s) => (this.survey.compare ? this.stores.get(`compare:${s.info.id}`)?.load() : undefined)));
-    this.rebuild();
-    this.view.onChange(() => this.changed());
-    new ResizeObserver(() => this.rebuild()).observe(this.centre);
     this.keys();
+    await this.show();
+    this.view.onChange(() => this.changed());
+    this.resized.observe(this.centre);
     performance.mark('versine-ready');
     document.documentElement.dataset.ready = 'true';
+    void this.marks.load();
+    this.loadAll();
+  }
+
+  dispose(): void {
+    this.release.abort();
+    this.resized.disconnect();
+    cancelAnimationFrame(this.pending);
+    for (const strip of this.strips) strip.destroy();
+    this.plan.dispose();
   }
 
   private visible(): Strip[] {
@@ -83,101 +103,140 @@ export class SurveyScreen {
   }
 
   private layout(): void {
-    const header = element('header');
-    const verdict = element('strong', { class: `verdict ${this.result.verdict.accepted === false ? 'bad' : this.result.verdict.accepted ? 'good' : ''}` }, this.result.verdict.text);
-    const theme = element('button', { type: 'button' }, 'Theme D');
-    theme.addEventListener('click', () => this.retheme());
-    const help = element('button', { type: 'button' }, 'Keys ?');
-    help.addEventListener('click', showHelp);
-    const report = element('button', { type: 'button' }, 'Report P');
-    report.addEventListener('click', () => void openReport());
-    report.hidden = !this.result.report;
-    header.append(element('h1', {}, this.result.title), verdict, element('span', { class: 'subtitle' }, this.result.subtitle), this.readout, theme, help, report);
-
+    const top = header(this.result, this.readout, {
+      theme: () => this.retheme(),
+      help: showHelp,
+      exports: () => this.exports(),
+      report: () => void openReport(),
+    });
     const left = element('aside', { 'aria-label': 'Plan and exceedances' });
-    left.append(this.plan.element, packUpPanel(this.survey, this.result), this.table.element, this.marks.element);
-
-    const bar = element('div', { role: 'tablist', class: 'tabs', 'aria-label': 'Groups of strips' });
-    for (const { id, title } of tabs.filter((t) => this.survey.strips.some((s) => s.tab === t.id))) {
-      const button = element('button', { role: 'tab', type: 'button', 'aria-selected': String(id === this.tab) }, title);
-      button.addEventListener('click', () => this.openTab(id, bar));
-      bar.append(button);
+    left.append(this.plan.element, packUpPanel(this.survey.packUp), this.table.element, this.marks.element);
+    const all = [...this.survey.tabs, ...panels.filter((p) => p.has(this.result)).map(({ id, title }) => ({ id, title }))];
+    for (const { id, title } of all) {
+      const button = element('button', { role: 'tab', type: 'button', 'data-tab': id, 'aria-controls': 'strips' }, title);
+      button.addEventListener('click', () => this.openTab(id));
+      this.bar.append(button);
     }
+    this.bar.addEventListener('keydown', (event) => this.walkTabs(event));
     const main = element('main');
-    main.append(bar, this.centre);
+    main.append(this.bar, this.centre);
     const footer = element('footer');
     footer.append(this.overview.element);
-    this.root.replaceChildren(header, left, main, footer);
+    this.root.replaceChildren(top, left, main, footer);
     this.root.className = 'survey';
-    this.fillCentre();
+    this.root.setAttribute('aria-busy', 'false');
   }
 
-  private fillCentre(): void {
-    this.centre.replaceChildren(...this.visible().map((s) => s.element));
-    if (this.survey.strips.length === 0) {
-      this.centre.append(element('p', { class: 'empty' }, 'This result has a trajectory but no track geometry. Add [geometry] to the job and run it again.'));
-    }
+  /** Left and right walk the tabs while one has the focus, as a tab list should. */
+  private walkTabs(event: KeyboardEvent): void {
+    const by = event.key === 'ArrowRight' ? 1 : event.key === 'ArrowLeft' ? -1 : 0;
+    if (by === 0) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const tabs = [...this.bar.children] as HTMLElement[];
+    const next = tabs[(tabs.findIndex((t) => t.dataset.tab === this.tab) + by + tabs.length) % tabs.length];
+    this.openTab(next.dataset.tab!);
+    next.focus();
   }
 
-  private async openTab(id: StripInfo['tab'], bar: HTMLElement): Promise<void> {
+  private openTab(id: string): void {
+    if (id === this.tab) return;
     for (const strip of this.visible()) strip.destroy();
     this.tab = id;
-    [...bar.children].forEach((b) => b.setAttribute('aria-selected', String(b.textContent === tabs.find((t) => t.id === id)!.title)));
-    await Promise.all(this.visible().map((s) => s.store.load()));
-    this.fillCentre();
-    this.rebuild();
+    void this.show();
+    this.loadAll();
   }
 
-  private rebuild(): void {
+  /** Fills the middle with the tab's strips, or its panel. */
+  private async show(): Promise<void> {
+    for (const button of this.bar.querySelectorAll<HTMLElement>('[role=tab]')) {
+      const on = button.dataset.tab === this.tab;
+      button.setAttribute('aria-selected', String(on));
+      button.tabIndex = on ? 0 : -1;
+    }
+    const panel = panels.find((p) => p.id === this.tab);
+    this.centre.replaceChildren(...(panel ? [panel.make(this.result, this.axis, (x) => this.view.goTo(x))] : this.visible().map((s) => s.element)));
+    this.centre.scrollTop = 0;
+    await this.rebuild();
+  }
+
+  private rebuild(): Promise<unknown> {
     const strips = this.visible();
-    const height = Math.max(48, (this.centre.clientHeight - 26) / Math.max(strips.length, 1));
+    const room = Math.floor((this.centre.clientHeight - 26) / Math.max(strips.length, 1));
+    const height = Math.min(Math.max(leastHeight, room), 170);
+    const width = Math.max(this.centre.clientWidth - labelWidth - valueWidth, 100);
     strips.forEach((strip, i) => {
-      const width = this.centre.clientWidth - 172 - 116;
-      strip.build(Math.max(width, 100), height, this.view.from, this.view.to, i + 1 === strips.length);
+      strip.build(width, height, this.view.from, this.view.to, i + 1 === strips.length);
       strip.setLimitsScale(this.limitsScale);
     });
-    this.draw();
+    return this.draw();
+  }
+
+  /** All samples of what is seen, one after another, so that the first picture has the line for itself. */
+  private async loadAll(): Promise<void> {
+    for (const strip of this.visible()) for (const store of strip.stores) await store.load();
+    document.documentElement.dataset.loaded = this.tab;
+    this.changed();
   }
 
   private changed(): void {
     cancelAnimationFrame(this.pending);
-    this.pending = requestAnimationFrame(() => this.draw());
+    this.pending = requestAnimationFrame(() => void this.draw());
   }
 
-  private draw(): void {
+  private async draw(): Promise<void> {
     const { from, to, cursor } = this.view;
-    const spoken: string[] = [];
-    for (const strip of this.visible()) {
-      void strip.show(from, to);
-      strip.moveCursor(cursor);
-      spoken.push(strip.showCursor(cursor));
-    }
-    this.readout.textContent = `km ${this.chainage.text(cursor, to - from < 50 ? 2 : 0)}`;
+    this.readout.textContent = this.axis.readout(cursor, to - from < 50 ? 2 : 0);
     this.plan.show(from, to, cursor);
     this.overview.draw();
+    const drawn = this.visible().map((strip) => strip.show(from, to));
+    for (const strip of this.visible()) strip.moveCursor(cursor);
+    void this.read(cursor);
+    await Promise.all(drawn);
+  }
+
+  /** Values at the cursor, from memory or from the server, which has every sample. */
+  private async read(cursor: number): Promise<void> {
+    const turn = ++this.asked;
+    const strips = this.visible();
+    const local = strips.every((s) => s.stores.every((store) => store.loaded));
+    const remote: Values = local || strips.length === 0 ? {} : await getValues(cursor);
+    if (turn !== this.asked) return;
+    const reading = (store: SeriesStore | undefined): Reading | null => {
+      if (!store) return null;
+      if (store.loaded) return store.at(cursor);
+      const pair = remote[store.id];
+      return pair && pair[0] !== null ? { value: pair[0], sigma: pair[1] ?? NaN } : null;
+    };
+    const spoken = strips.map((s) => s.showReading(reading(s.store), reading(this.stores.get(s.info.companion?.id ?? ''))));
     speak(`${this.readout.textContent}. ${spoken.filter(Boolean).join('. ')}`);
   }
 
   private retheme(): void {
     nextTheme();
     this.plan.style();
-    this.rebuild();
+    void this.rebuild();
+  }
+
+  private exports(): void {
+    showExports({ strips: this.visible(), view: this.view, axis: this.axis, result: this.result, marks: this.marks.places(), redraw: () => { this.plan.style(); void this.rebuild(); } });
   }
 
   private keys(): void {
     const view = this.view;
+    const width = () => view.to - view.from;
     const pan = (by: number) => view.zoom(view.from + by, view.to + by);
     const zoom = (factor: number, at = view.cursor) => view.zoom(at - (at - view.from) * factor, at + (view.to - at) * factor);
-    const step = () => Math.max(this.survey.x.step, (view.to - view.from) / 600);
-    bindKeys({
-      ArrowLeft: (shift) => view.moveCursor(view.cursor - (shift ? 10 : 1) * step()),
-      ArrowRight: (shift) => view.moveCursor(view.cursor + (shift ? 10 : 1) * step()),
+    const step = (shift: boolean) => (shift ? 10 : 1) * Math.max(this.survey.x.step, width() / 600);
+    bindKeys(this.release.signal, {
+      ArrowLeft: (shift) => view.moveCursor(view.cursor - step(shift)),
+      ArrowRight: (shift) => view.moveCursor(view.cursor + step(shift)),
       '+': () => zoom(0.5),
       '-': () => zoom(2),
-      PageUp: () => pan(-(view.to - view.from) * 0.9),
-      PageDown: () => pan((view.to - view.from) * 0.9),
-      Home: () => view.goTo(view.first),
-      End: () => view.goTo(view.last),
+      PageUp: () => pan(-0.9 * width()),
+      PageDown: () => pan(0.9 * width()),
+      Home: () => view.goTo(view.first, width()),
+      End: () => view.goTo(view.last, width()),
       f: () => view.fit(),
       n: () => this.table.step(1),
       b: () => this.table.step(-1),
@@ -185,49 +244,26 @@ export class SurveyScreen {
         this.limitsScale = !this.limitsScale;
         for (const strip of this.visible()) strip.setLimitsScale(this.limitsScale);
       },
-      g: () => this.askPlace(),
+      g: () => askPlace(this.axis, view),
       m: () => this.marks.add(view.cursor),
       d: () => this.retheme(),
       p: () => this.result.report && openReport(),
-      e: () => exportPng(this.visible(), this.result.title),
-      c: () => exportCsv(this.visible(), view, this.chainage, this.result.title),
+      e: () => this.exports(),
       '?': showHelp,
     });
     this.centre.addEventListener(
       'wheel',
       (event) => {
+        const inside = event.target instanceof Element && event.target.closest('.strip-box');
+        if (!inside || event.ctrlKey) return; // elsewhere the wheel scrolls
         event.preventDefault();
-        if (event.shiftKey) return pan(((event.deltaY || event.deltaX) / 800) * (view.to - view.from));
+        if (event.shiftKey) return pan(((event.deltaY || event.deltaX) / 800) * width());
         const box = this.centre.getBoundingClientRect();
-        const share = Math.min(Math.max((event.clientX - box.left - 172 - 44) / (box.width - 172 - 116 - 44), 0), 1);
-        zoom(Math.exp(event.deltaY / 400), view.from + share * (view.to - view.from));
+        const share = Math.min(Math.max((event.clientX - box.left - labelWidth - scaleWidth) / (this.centre.clientWidth - labelWidth - valueWidth - scaleWidth), 0), 1);
+        zoom(Math.exp(event.deltaY / 400), view.from + share * width());
       },
       { passive: false },
     );
     this.centre.addEventListener('dblclick', () => view.fit());
-  }
-
-  private askPlace(): void {
-    const dialog = element('dialog', { 'aria-label': 'Go to a kilometre' });
-    const form = element('form', { method: 'dialog' });
-    const input = element('input', { id: 'place', placeholder: '16+104', autocomplete: 'off' });
-    const note = element('p', { role: 'alert' });
-    form.append(element('label', { for: 'place' }, 'Go to km'), input, note);
-    form.addEventListener('submit', (event) => {
-      const posted = Chainage.parse(input.value);
-      const places = posted === null ? [] : this.chainage.places(posted);
-      const inside = places.filter((x) => x >= this.view.first && x <= this.view.last);
-      if (inside.length === 0) {
-        event.preventDefault();
-        note.textContent = posted === null ? 'Write 16+104, 16.104 or 16104.' : 'This kilometre is not in the survey.';
-        return;
-      }
-      // Where a kilometre is posted twice, the next one after the cursor.
-      this.view.goTo(inside.find((x) => x > this.view.cursor + 0.5) ?? inside[0]);
-    });
-    dialog.append(form);
-    dialog.addEventListener('close', () => dialog.remove());
-    document.body.append(dialog);
-    dialog.showModal();
   }
 }

@@ -10,14 +10,13 @@ export class View {
   constructor(
     readonly first: number,
     readonly last: number,
+    signal: AbortSignal,
   ) {
     this.from = first;
     this.to = last;
     this.cursor = (first + last) / 2;
     this.readHash();
-    addEventListener('hashchange', () => {
-      if (this.readHash()) this.emit(false);
-    });
+    addEventListener('hashchange', () => this.readHash() && this.emit(false), { signal });
   }
 
   onChange(listener: () => void): void {

@@ -14,6 +14,10 @@ namespace versine::app {
 /// What the viewer's page asks for. The server knows nothing of results: it guards the door and passes on.
 struct ViewContent {
   std::function<std::string()> result_json;
+  /// Whether a job is writing the result, how far it is, and which generation of the result `result_json` is of.
+  std::function<std::string()> progress_json;
+  /// Values of every series at one place.
+  std::function<std::string(double x)> values_json;
   /// Binary body of /api/series/{id}; nothing when there is no such series. `buckets` 0: every sample.
   std::function<std::optional<std::string>(const std::string& id, double from, double to, std::size_t buckets)> series;
   /// report.html of the result, where there is one.

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "versine/core/progress.hpp"
+
+namespace versine::app {
+
+/// Passes progress on and keeps a small file of it in the folder that a job is writing, for `versine view`: stage,
+/// fraction, seconds so far, and the stages that are done. Each state replaces the last by rename, at most four times
+/// a second and at every change of stage; a full disk is not this file's business. `finish` removes it.
+class ProgressFile final : public Progress {
+ public:
+  static constexpr const char* name = "progress.json";
+
+  ProgressFile(Progress& next, std::filesystem::path folder) : next_(next), folder_(std::move(folder)) {}
+  void report(std::string_view stage, double fraction) override;
+  [[nodiscard]] bool cancelled() const override { return next_.cancelled(); }
+  /// A finding that is known before the end: "imu: 2 gaps".
+  void note(std::string text);
+  void finish();
+
+ private:
+  void write();
+  using Clock = std::chrono::steady_clock;
+  Progress& next_;
+  std::filesystem::path folder_;
+  std::string stage_;
+  double fraction_ = 0.0;
+  Clock::time_point started_ = Clock::now(), stage_started_ = started_, written_{};
+  std::vector<std::pair<std::string, double>> done_;
+  std::vector<std::string> notes_;
+};
+
+/// The folder that a running job is writing for `target`; nothing when no such process is alive.
+[[nodiscard]] std::optional<std::filesystem::path> running_job(const std::filesystem::path& target);
+
+}  // namespace versine::app

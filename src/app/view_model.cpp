@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "versine/app/view_model.hpp"
+
+#include <fmt/format.h>
+
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "versine/app/progress_file.hpp"
+#include "versine/app/version.hpp"
+#include "versine/app/view_survey.hpp"
+#include "versine/io/input_stream.hpp"
+
+namespace versine::app {
+
+using json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* format = "versine run 1";
+
+Error no_result(const fs::path& folder, std::string found) {
+  return {.file = folder.string(),
+          .found = std::move(found),
+          .expected = "the result folder of a Versine job, with its run.json",
+          .advice = "give the folder that the job printed as 'Result:', or run the job first"};
+}
+
+fs::path cleaned(const fs::path& folder) {
+  fs::path out = fs::absolute(folder).lexically_normal();
+  return out.has_filename() ? out : out.parent_path();
+}
+
+/// Follows one folder: opens what is there, and again when a job has replaced it. Several threads ask at once.
+class Follower {
+ public:
+  Follower(fs::path folder, std::optional<fs::path> compare)
+      : folder_(std::move(folder)), compare_(std::move(compare)) {}
+
+  Expected<void> start() {
+    const std::lock_guard lock(mutex_);
+    if (fs::exists(folder_ / "run.json")) return open();
+    if (running_job(folder_)) return {};
+    return tl::unexpected(
+        no_result(folder_, fs::is_directory(folder_) ? "a folder without run.json" : "no such folder"));
+  }
+
+  std::shared_ptr<const ViewContent> content() {
+    const std::lock_guard lock(mutex_);
+    std::error_code code;
+    const auto written = fs::last_write_time(folder_ / "run.json", code);
+    // A result that cannot be opened is tried again only when it has changed.
+    if (!code && written != written_) (void)open();
+    return content_;
+  }
+
+  std::string result() {
+    if (const auto now = content()) return now->result_json();
+    return json{{"kind", "waiting"}, {"title", folder_.filename().string()}, {"failure", failure()}}.dump();
+  }
+
+  std::string progress() {
+    (void)content();
+    const auto job = running_job(folder_);
+    json out{{"running", job.has_value()}};
+    {
+      const std::lock_guard lock(mutex_);
+      out["generation"] = generation_;
+      out["opened"] = content_ != nullptr;
+      out["failure"] = failure_;
+    }
+    if (job) {
+      const auto text = io::read_text(*job / ProgressFile::name);
+      const json state = text ? json::parse(*text, nullptr, false) : json();
+      if (state.is_object()) out.update(state);
+    }
+    return out.dump();
+  }
+
+ private:
+  Expected<void> open() {
+    std::error_code code;
+    written_ = fs::last_write_time(folder_ / "run.json", code);
+    auto opened = open_view(folder_, compare_);
+    ++generation_;
+    if (!opened) {
+      failure_ = opened.error().message();
+      content_ = nullptr;
+      return tl::unexpected(opened.error());
+    }
+    failure_.clear();
+    content_ = std::make_shared<const ViewContent>(std::move(*opened));
+    return {};
+  }
+  std::string failure() {
+    const std::lock_guard lock(mutex_);
+    return failure_;
+  }
+
+  fs::path folder_;
+  std::optional<fs::path> compare_;
+  std::mutex mutex_;
+  std::shared_ptr<const ViewContent> content_;
+  std::string failure_;
+  fs::file_time_type written_;
+  int generation_ = 0;
+};
+
+}  // namespace
+
+Expected<ViewContent> open_view(const fs::path& given, const std::optional<fs::path>& compare) {
+  const fs::path folder = cleaned(given);
+  if (!fs::exists(folder / "run.json")) {
+    return tl::unexpected(no_result(given, fs::is_directory(folder) ? "a folder without run.json" : "no such folder"));
+  }
+  const auto text = io::read_text(folder / "run.json");
+  if (!text) return tl::unexpected(text.error());
+  const json run = json::parse(*text, nullptr, false);
+  if (!run.is_object()) {
+    return fail({.file = (folder / "run.json").string(),
+                 .found = "text that is no JSON, or is cut short",
+                 .expected = "what a Versine job wrote",
+                 .advice = "run the job again, or copy the whole folder once more"});
+  }
+  if (run.value("format", "") != format) {
+    return fail({.file = (folder / "run.json").string(),
+                 .field = "format",
+                 .found = fmt::format("'{}', written by version {}", run.value("format", "none"),
+                                      run.value("version", "unknown")),
+                 .expected = fmt::format("'{}', as version {} writes it", format, version()),
+                 .advice = "run the job again with this version, or open the result with the version that wrote it"});
+  }
+  const std::string command = run.value("command", "");
+  if (command == "survey" || command == "geometry") return open_survey_view(folder, *text, compare);
+  return fail({.file = (folder / "run.json").string(),
+               .field = "command",
+               .found = fmt::format("a result of 'versine {}'", command),
+               .expected = "one of survey or geometry",
+               .advice = "its own files show it; 'versine report' makes a page of it where it can"});
+}
+
+Expected<ViewContent> follow_view(const fs::path& folder, const std::optional<fs::path>& compare) {
+  auto follower = std::make_shared<Follower>(cleaned(folder), compare);
+  if (auto started = follower->start(); !started) return tl::unexpected(started.error());
+  ViewContent out;
+  out.result_json = [follower] { return follower->result(); };
+  out.progress_json = [follower] { return follower->progress(); };
+  out.values_json = [follower](double x) {
+    const auto now = follower->content();
+    return now && now->values_json ? now->values_json(x) : std::string("{}");
+  };
+  out.series = [follower](const std::string& id, double from, double to,
+                          std::size_t buckets) -> std::optional<std::string> {
+    const auto now = follower->content();
+    return now && now->series ? now->series(id, from, to, buckets) : std::nullopt;
+  };
+  out.report = [follower]() -> std::optional<std::string> {
+    const auto now = follower->content();
+    return now && now->report ? now->report() : std::nullopt;
+  };
+  if (const auto now = follower->content(); now && now->put_constraints) {
+    out.put_constraints = [follower](const std::string& text) -> Expected<void> {
+      const auto current = follower->content();
+      if (!current || !current->put_constraints) return fail({.found = "no result that is open for review"});
+      return current->put_constraints(text);
+    };
+  }
+  return out;
+}
+
+}  // namespace versine::app
