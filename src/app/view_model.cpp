@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
@@ -30,6 +31,28 @@ Error no_result(const fs::path& folder, std::string found) {
 fs::path cleaned(const fs::path& folder) {
   fs::path out = fs::absolute(folder).lexically_normal();
   return out.has_filename() ? out : out.parent_path();
+}
+
+/// Beside the result, which is never changed and may be replaced.
+fs::path marks_file(const fs::path& folder) {
+  return fs::path(folder).concat(".marks.json");
+}
+
+Expected<void> write_marks(const fs::path& path, const std::string& text) {
+  const json marks = json::parse(text, nullptr, false);
+  if (!marks.is_array()) return fail({.found = "marks that are no JSON array"});
+  const fs::path part = fs::path(path).concat(".part");
+  std::error_code code;
+  {
+    std::ofstream file(part, std::ios::binary);
+    file << marks.dump(1) << '\n';
+    if (!file.flush()) code = std::make_error_code(std::errc::io_error);
+  }
+  if (!code) fs::rename(part, path, code);
+  if (!code) return {};
+  return fail({.file = path.string(),
+               .found = "that it cannot be written",
+               .advice = "allow writing beside the result; until then the browser keeps the marks"});
 }
 
 /// Follows one folder: opens what is there, and again when a job has replaced it. Several threads ask at once.
@@ -159,6 +182,12 @@ Expected<ViewContent> follow_view(const fs::path& folder, const std::optional<fs
     const auto now = follower->content();
     return now && now->report ? now->report() : std::nullopt;
   };
+  const fs::path marks = marks_file(cleaned(folder));
+  out.marks_json = [marks] {
+    const auto text = io::read_text(marks);
+    return text && json::accept(*text) ? *text : std::string("[]");
+  };
+  out.put_marks = [marks](const std::string& text) { return write_marks(marks, text); };
   if (const auto now = follower->content(); now && now->put_constraints) {
     out.put_constraints = [follower](const std::string& text) -> Expected<void> {
       const auto current = follower->content();

@@ -81,7 +81,8 @@ struct ViewServer::Impl {
       refuse(response, 403, "requests of other sites are refused");
       return true;
     }
-    const bool writes = request.method == "POST" && request.path == "/api/constraints" && content.put_constraints;
+    const bool writes = request.method == "POST" && ((request.path == "/api/constraints" && content.put_constraints) ||
+                                                     (request.path == "/api/marks" && content.put_marks));
     if (request.method != "GET" && request.method != "HEAD" && !writes) {
       response.set_header("Allow", "GET, HEAD");
       refuse(response, 405, "only GET and HEAD");
@@ -127,14 +128,21 @@ struct ViewServer::Impl {
       response.set_header("Content-Security-Policy", report_policy);
       response.set_content(*text, "text/html; charset=utf-8");
     });
-    server.Post("/api/constraints", [this](const httplib::Request& request, httplib::Response& response) {
-      if (!request.get_header_value("Content-Type").starts_with("application/json")) {
-        return refuse(response, 415, "constraints are JSON");
-      }
-      const auto done = content.put_constraints(request.body);
-      if (!done) return refuse(response, 422, done.error().message().c_str());
-      response.status = 204;
+    server.Get("/api/marks", [this](const httplib::Request&, httplib::Response& response) {
+      response.set_content(content.marks_json ? content.marks_json() : "[]", "application/json");
     });
+    const auto take = [this](const char* path, const auto& put) {
+      server.Post(path, [&put](const httplib::Request& request, httplib::Response& response) {
+        if (!request.get_header_value("Content-Type").starts_with("application/json")) {
+          return refuse(response, 415, "this is written as JSON");
+        }
+        const auto done = put(request.body);
+        if (!done) return refuse(response, 422, done.error().message().c_str());
+        response.status = 204;
+      });
+    };
+    take("/api/constraints", content.put_constraints);
+    take("/api/marks", content.put_marks);
   }
 
   void serve_assets() {

@@ -15,6 +15,8 @@ export interface Axis {
   jumps(): { x: number; label: string }[];
   /** Where ticks may stand: as many as fit at least `least` apart. */
   ticks(from: number, to: number, least: number): number[];
+  /** The label of a tick among ticks so far apart. */
+  tick(x: number, apart: number): string;
 }
 
 const pad = (value: number, width = 2) => String(value).padStart(width, '0');
@@ -44,6 +46,10 @@ export class TimeAxis implements Axis {
 
   jumps(): { x: number; label: string }[] {
     return [];
+  }
+
+  tick(x: number, apart: number): string {
+    return this.text(x, apart < 0.95 ? 1 : 0);
   }
 
   ticks(from: number, to: number, least: number): number[] {

@@ -33,6 +33,10 @@ export class Chainage implements Axis {
     return `km ${this.text(x, digits)}`;
   }
 
+  tick(x: number, apart: number): string {
+    return apart > 995 ? `km ${Math.round(this.posted(x + 1e-6) / 1000)}` : this.text(x + 1e-6, apart < 0.95 ? 1 : 0);
+  }
+
   find(typed: string): number[] | null {
     const posted = Chainage.parse(typed);
     return posted === null ? null : this.places(posted);

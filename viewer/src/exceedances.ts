@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Chainage } from './chainage';
+import type { Axis } from './axis';
 import type { Exceedance } from './contract';
 import { element, minus, percent } from './text';
 import { limitStyle } from './theme';
 
 const severity = { AL: 1, IL: 2, IAL: 3 };
+const mostRows = 1000; // beyond, a table is no help to anyone
 const eventLength = 15; // m: exceedances nearer than this are one event
 
 /** Events by place with the worst first; inside an event again the worst first. */
@@ -30,10 +31,10 @@ export class ExceedanceTable {
 
   constructor(
     list: Exceedance[],
-    chainage: Chainage,
+    axis: Axis,
     private readonly select: (e: Exceedance) => void,
   ) {
-    this.element.append(element('h2', {}, `Exceedances (${list.length}) · N / B to step`));
+    this.element.append(element('h2', {}, `Exceedances (${list.length})${list.length > mostRows ? `, the worst ${mostRows}` : ''} · N / B to step`));
     if (list.length === 0) {
       this.element.append(element('p', { class: 'empty' }, 'No limit is exceeded, or none was given.'));
       return;
@@ -44,18 +45,20 @@ export class ExceedanceTable {
     for (const name of ['Class', 'Place', 'Parameter', 'Peak', 'Over']) head.append(element('th', { scope: 'col' }, name));
     const body = table.createTBody();
     for (const { exceedance, nested } of ordered(list)) {
+      if (this.rows.length === mostRows) break;
       const row = body.insertRow();
       row.className = `class-${exceedance.class}`;
       const style = limitStyle[exceedance.class];
-      const link = element('button', { type: 'button' }, `${nested ? '↳ ' : ''}${chainage.text(exceedance.peakAt)}`);
+      const link = element('button', { type: 'button' }, `${nested ? '↳ ' : ''}${axis.text(exceedance.peakAt)}`);
       if (nested) row.classList.add('nested');
       link.addEventListener('click', () => this.goTo(this.rows.findIndex((r) => r.row === row)));
-      row.append(element('th', { scope: 'row', title: style.name }, `${style.glyph} ${exceedance.class}`));
+      row.append(element('th', { scope: 'row', title: style.name }, `${style.glyph} ${exceedance.level}`));
       row.insertCell().append(link);
       row.insertCell().textContent = exceedance.title;
+      row.cells[2].title = exceedance.note;
       const peak = row.insertCell();
-      peak.textContent = minus(exceedance.peak, 1);
-      peak.title = exceedance.sigma === null ? exceedance.unit : `± ${(1.96 * exceedance.sigma).toFixed(1)} ${exceedance.unit}`;
+      peak.textContent = minus(exceedance.peak, exceedance.digits);
+      peak.title = exceedance.sigma === null ? exceedance.unit : `± ${(1.96 * exceedance.sigma).toFixed(exceedance.digits + 1)} ${exceedance.unit}`;
       const over = row.insertCell();
       over.textContent = percent(exceedance.probability);
       over.title = 'probability that the limit is exceeded';

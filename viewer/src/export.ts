@@ -1,8 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Chainage } from './chainage';
+import type { Axis } from './axis';
+import type { Polyline, Result } from './contract';
+import { openDialog } from './dialogs';
+import type { Mark } from './marks';
+import { lowerBound } from './pyramid';
 import type { Strip } from './strips';
-import { css } from './theme';
+import { element } from './text';
+import { css, withTheme } from './theme';
 import type { View } from './view';
+
+export interface Exported {
+  strips: Strip[];
+  view: View;
+  axis: Axis;
+  result: Result;
+  marks: Mark[];
+  redraw(): void; // after a change of theme
+}
 
 function save(name: string, blob: Blob): void {
   const link = document.createElement('a');
@@ -15,38 +29,103 @@ function save(name: string, blob: Blob): void {
 const fileName = (title: string, ending: string) => `${title.replace(/[^\p{L}\p{N}]+/gu, '-')}.${ending}`;
 
 /** The strips as they are seen, one below the other, with their titles. */
-export function exportPng(strips: Strip[], title: string): void {
+function exportPng({ strips, result, axis, view }: Exported): void {
   const canvases = strips.map((s) => s.canvas).filter((c): c is HTMLCanvasElement => c !== null);
   if (canvases.length === 0) return;
   const label = 200 * devicePixelRatio;
+  const head = 30 * devicePixelRatio;
   const out = document.createElement('canvas');
   out.width = label + Math.max(...canvases.map((c) => c.width));
-  out.height = canvases.reduce((sum, c) => sum + c.height, 0);
+  out.height = head + canvases.reduce((sum, c) => sum + c.height, 0);
   const ctx = out.getContext('2d')!;
   ctx.fillStyle = css('--background');
   ctx.fillRect(0, 0, out.width, out.height);
-  ctx.fillStyle = css('--text');
-  ctx.font = `${13 * devicePixelRatio}px system-ui, sans-serif`;
-  let y = 0;
+  const write = (text: string, x: number, y: number, weight: string, color: string) => {
+    ctx.font = `${weight} ${13 * devicePixelRatio}px system-ui, sans-serif`;
+    ctx.fillStyle = css(color);
+    ctx.fillText(text, x, y);
+  };
+  write(`${result.title} · ${axis.readout(view.from)} to ${axis.readout(view.to)}`, 8, 20 * devicePixelRatio, 'bold', '--text');
+  let y = head;
   strips.forEach((strip, i) => {
-    ctx.fillText(`${strip.info.title} [${strip.info.unit}]`, 8, y + 20 * devicePixelRatio);
+    write(strip.info.title, 8, y + 18 * devicePixelRatio, 'bold', '--text');
+    write([strip.info.note, strip.info.unit].filter(Boolean).join(' · '), 8, y + 34 * devicePixelRatio, 'normal', '--muted');
     ctx.drawImage(canvases[i], label, y);
     y += canvases[i].height;
   });
-  out.toBlob((blob) => blob && save(fileName(title, 'png'), blob));
+  out.toBlob((blob) => blob && save(fileName(result.title, 'png'), blob));
 }
 
-/** Every sample of the visible stretch, as in the result's own CSV. */
-export function exportCsv(strips: Strip[], view: View, chainage: Chainage, title: string): void {
-  const whole = strips.filter((s) => s.store.whole);
-  if (whole.length === 0) return;
-  const columns = whole.map((s) => s.store.samples(view.from, view.to));
-  const head = ['distance_m', 'posted_m', ...whole.flatMap((s) => [`${s.info.id}_${s.info.unit.replace('/', '_per_')}`, `${s.info.id}_half95`])];
-  const number = (v: number) => (Number.isFinite(v) ? String(Math.round(v * 1e6) / 1e6) : '');
-  const rows = Array.from(columns[0].x, (x, i) => [
+const number = (v: number) => (Number.isFinite(v) ? String(Math.round(v * 1e5) / 1e5) : '');
+
+/** Every sample of the visible stretch under the names of the result's own CSV; strips of another step apart. */
+export async function csvOf({ strips, view, axis }: Exported): Promise<string> {
+  const columns = await Promise.all(strips.map(async (s) => ({ id: s.info.id, series: await s.store.samples(view.from, view.to) })));
+  const grid = columns[0].series.x;
+  const same = columns.filter((c) => c.series.x.length === grid.length);
+  const head = [axis.unit === 'km' ? 'distance_m' : 'time_s', 'place', ...same.flatMap((c) => (c.series.sigma ? [c.id, `sigma_${c.id}`] : [c.id]))];
+  const rows = Array.from(grid, (x, i) => [
     x.toFixed(3),
-    chainage.posted(x).toFixed(3),
-    ...columns.flatMap((c) => [number(c.min[i]), c.lower && c.upper ? number((c.upper[i] - c.lower[i]) / 2) : '']),
+    axis.text(x, 3),
+    ...same.flatMap((c) => (c.series.sigma ? [number(c.series.min[i]), number(c.series.sigma[i])] : [number(c.series.min[i])])),
   ]);
-  save(fileName(title, 'csv'), new Blob([[head, ...rows].map((r) => r.join(',')).join('\n') + '\n'], { type: 'text/csv' }));
+  return [head, ...rows].map((row) => row.join(',')).join('\n') + '\n';
+}
+
+/** Latitude and longitude at a place, between two vertices of the plan. */
+function position(plan: Polyline[], x: number): [number, number] | null {
+  for (const { x: at, latitude, longitude } of plan) {
+    if (!latitude || !longitude || x < at[0] || x > at[at.length - 1]) continue;
+    const i = Math.max(1, lowerBound(at, x));
+    const f = (x - at[i - 1]) / (at[i] - at[i - 1]);
+    return [latitude[i - 1] + f * (latitude[i] - latitude[i - 1]), longitude[i - 1] + f * (longitude[i] - longitude[i - 1])];
+  }
+  return null;
+}
+
+const escaped = (text: string) => text.replace(/[<>&"]/g, (c) => `&#${c.charCodeAt(0)};`);
+
+/** Exceedances and marks as waypoints for a hand-held receiver. */
+export function gpxOf({ result, axis, marks }: Exported): string {
+  const { exceedances, plan } = result.survey!;
+  const point = (x: number, name: string, text: string) => {
+    const at = position(plan, x);
+    return at ? `  <wpt lat="${at[0].toFixed(8)}" lon="${at[1].toFixed(8)}"><name>${escaped(name)}</name><desc>${escaped(text)}</desc></wpt>\n` : '';
+  };
+  const points = [
+    ...exceedances.map((e) => point(e.peakAt, `${e.level} ${e.title} ${axis.text(e.peakAt)}`, `${e.peak.toFixed(e.digits)} ${e.unit}, limit ${e.limit} ${e.unit}`)),
+    ...marks.map((m) => point(m.x, `Mark ${m.place}`, m.time)),
+  ];
+  return `<?xml version="1.0" encoding="UTF-8"?>\n<gpx version="1.1" creator="Versine" xmlns="http://www.topografix.com/GPX/1/1">\n${points.join('')}</gpx>\n`;
+}
+
+/** On paper everything is light; the theme comes back when the print dialog is closed. */
+function print(what: Exported): void {
+  const restore = withTheme('light');
+  what.redraw();
+  addEventListener('afterprint', () => { restore(); what.redraw(); }, { once: true });
+  setTimeout(() => window.print(), 150); // after the redrawing
+}
+
+export function showExports(what: Exported): void {
+  const { result, axis, view } = what;
+  const choices: [string, () => void][] = [
+    ['PNG: the strips as they are seen', () => exportPng(what)],
+    ['CSV: every sample of what is seen', () => void csvOf(what).then((text) => save(fileName(result.title, 'csv'), new Blob([text], { type: 'text/csv' })))],
+    ['PDF: this page, through the print dialog', () => print(what)],
+    ['GPX: exceedances and marks', () => save(fileName(result.title, 'gpx'), new Blob([gpxOf(what)], { type: 'application/gpx+xml' }))],
+  ];
+  const list = element('div', { class: 'choices' });
+  for (const [label, action] of choices) {
+    const button = element('button', { type: 'button' }, label);
+    button.disabled = what.strips.length === 0 && !label.startsWith('GPX') && !label.startsWith('PDF');
+    button.addEventListener('click', () => {
+      dialog.close();
+      action();
+    });
+    list.append(button);
+  }
+  const close = element('button', { type: 'button' }, 'Close');
+  close.addEventListener('click', () => dialog.close());
+  const dialog = openDialog('Export', element('h2', {}, `Export ${axis.readout(view.from)} to ${axis.readout(view.to)}`), list, close);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Chainage } from './chainage';
-import type { Exceedance } from './contract';
+import type { Axis } from './axis';
+import type { ControlPoint, Exceedance } from './contract';
 import { element } from './text';
 import { css, limitStyle } from './theme';
 import type { View } from './view';
@@ -14,8 +14,9 @@ export class Overview {
 
   constructor(
     private readonly view: View,
-    private readonly chainage: Chainage,
+    private readonly axis: Axis,
     private readonly exceedances: Exceedance[],
+    private readonly control: ControlPoint[],
   ) {
     this.element.append(this.canvas);
     let grip = 0;
@@ -60,18 +61,10 @@ export class Overview {
     ctx.fillRect(0, base, width, 1);
     ctx.font = '12px system-ui, sans-serif';
     ctx.textAlign = 'center';
+    for (const c of this.control) ctx.fillRect(at(c.x), base, 1, 4);
     const span = this.view.last - this.view.first;
-    const step = [100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000].find((s) => (s / span) * width > 90) ?? 100000;
-    let last = -Infinity;
-    for (let x = this.view.first; x <= this.view.last; x += step / 20) {
-      const posted = Math.round(this.chainage.posted(x) / step) * step;
-      for (const exact of this.chainage.places(posted)) {
-        if (Math.abs(exact - x) > step / 20 || exact - last < step / 2) continue;
-        last = exact;
-        const text = step >= 1000 ? `km ${posted / 1000}` : this.chainage.text(exact);
-        ctx.fillText(text, Math.min(Math.max(at(exact), 24), width - 24), height - 5);
-      }
-    }
+    const ticks = this.axis.ticks(this.view.first, this.view.last, (span * 100) / width);
+    for (const x of ticks) ctx.fillText(this.axis.tick(x, ticks.length > 1 ? ticks[1] - ticks[0] : 1), Math.min(Math.max(at(x), 24), width - 24), height - 4);
   }
 
   private centre(x: number): void {

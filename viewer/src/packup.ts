@@ -11,9 +11,8 @@ export function packUpPanel(items: PackUpItem[]): HTMLElement {
   }
   const bad = items.filter((item) => !item.good);
   const good = bad.length === 0;
-  panel.open = !good;
   const summary = element('summary');
-  summary.append(element('h2', { class: good ? 'good' : 'bad' }, `Can I pack up? ${good ? '✓ yes' : `✗ look at ${bad.length} of ${items.length}`}`));
+  summary.append(element('h2', { class: good ? 'good' : 'bad' }, `Can I pack up? ${good ? '✓ yes' : `✗ ${bad[0].name}${bad.length > 1 ? ` and ${bad.length - 1} more` : ''}`}`));
   const list = element('ul');
   for (const item of [...bad, ...items.filter((i) => i.good)]) {
     list.append(element('li', { class: item.good ? 'good' : 'bad' }, `${item.good ? '✓' : '✗'} ${item.name}: ${item.text}`));

@@ -4,14 +4,16 @@ import Feature from 'ol/Feature';
 import OlMap from 'ol/Map';
 import OlView from 'ol/View';
 import { ScaleLine } from 'ol/control';
+import { defaults as interactions } from 'ol/interaction/defaults';
 import LineString from 'ol/geom/LineString';
+import MultiLineString from 'ol/geom/MultiLineString';
 import Point from 'ol/geom/Point';
 import VectorLayer from 'ol/layer/Vector';
 import Projection from 'ol/proj/Projection';
 import VectorSource from 'ol/source/Vector';
 import { Fill, RegularShape, Circle, Stroke, Style } from 'ol/style';
 import { lowerBound } from './pyramid';
-import type { ControlPoint, Exceedance, Polyline } from './contract';
+import type { Polyline, Survey } from './contract';
 import { element } from './text';
 import { css, limitStyle } from './theme';
 
@@ -29,23 +31,23 @@ export class Plan {
   readonly element = element('section', { class: 'plan', 'aria-label': 'Plan of the line' });
   private readonly map: OlMap;
   private readonly cursor = new Feature<Point>();
-  private readonly window = new Feature<LineString>();
+  private readonly window = new Feature<MultiLineString>();
   private readonly lines: VectorSource = new VectorSource();
 
   constructor(
-    private readonly axis: Polyline[],
-    private readonly exceedances: Exceedance[],
-    private readonly control: ControlPoint[],
+    private readonly survey: Survey,
     crs: string,
     go: (x: number) => void,
   ) {
-    this.element.append(element('h2', {}, `Plan · ${crs}`));
+    // A PROJ string is too long for a heading; an authority's code says all.
+    this.element.append(element('h2', { title: crs }, `Plan · ${/^[A-Z]+:\d+$/.test(crs) ? crs : 'project map'}`));
     const target = element('div', { class: 'plan-map' });
     this.element.append(target);
     this.map = new OlMap({
       target,
       layers: [new VectorLayer({ source: this.lines })],
       controls: [new ScaleLine({ units: 'metric', minWidth: 60 })],
+      interactions: interactions({ keyboard: false }),
       view: new OlView({ projection: mapMetres(crs), center: [0, 0], resolution: 1, constrainResolution: false }),
     });
     this.map.on('singleclick', (event) => {
@@ -59,7 +61,7 @@ export class Plan {
   style(): void {
     this.lines.clear();
     const extent = [Infinity, Infinity, -Infinity, -Infinity];
-    for (const line of this.axis) {
+    for (const line of this.survey.plan) {
       const feature = new Feature(new LineString(line.easting.map((e, i) => [e, line.northing[i]])));
       feature.setStyle(new Style({ stroke: new Stroke({ color: css('--muted'), width: 2 }) }));
       this.lines.addFeature(feature);
@@ -69,8 +71,8 @@ export class Plan {
     }
     this.window.setStyle(new Style({ stroke: new Stroke({ color: css('--line'), width: 4 }) }));
     this.lines.addFeature(this.window);
-    for (const e of this.exceedances) this.add(e.peakAt, new RegularShape({ ...shapes[e.class], fill: new Fill({ color: css(limitStyle[e.class].color) }) }));
-    for (const c of this.control) this.add(c.x, new RegularShape({ points: 4, radius: 5, radius2: 0, stroke: new Stroke({ color: css('--text'), width: 1 }) }));
+    for (const c of this.survey.controlPoints) this.add(c.x, new RegularShape({ points: 4, radius: 2.5, fill: new Fill({ color: css('--muted') }) }));
+    for (const e of this.survey.exceedances) this.add(e.peakAt, new RegularShape({ ...shapes[e.class], fill: new Fill({ color: css(limitStyle[e.class].color) }) }));
     this.cursor.setStyle(new Style({ image: new Circle({ radius: 7, stroke: new Stroke({ color: css('--cursor'), width: 2 }) }) }));
     this.lines.addFeature(this.cursor);
     if (Number.isFinite(extent[0])) requestAnimationFrame(() => {
@@ -82,12 +84,11 @@ export class Plan {
   show(from: number, to: number, cursor: number): void {
     const at = this.place(cursor);
     if (at) this.cursor.setGeometry(new Point(at));
-    const line = this.axis[0];
-    if (!line) return;
-    const x = Float64Array.from(line.x);
-    const [a, b] = [lowerBound(x, from), lowerBound(x, to)];
-    const points = [this.place(from), ...line.easting.slice(a, b).map((e, i) => [e, line.northing[a + i]]), this.place(to)];
-    this.window.setGeometry(new LineString(points.filter((p): p is number[] => p !== null)));
+    const parts = this.survey.plan.map((line) => {
+      const [a, b] = [lowerBound(line.x, from), lowerBound(line.x, to)];
+      return [this.on(line, from), ...line.easting.slice(a, b).map((e, i) => [e, line.northing[a + i]]), this.on(line, to)].filter((p) => p !== null);
+    });
+    this.window.setGeometry(new MultiLineString(parts.filter((p) => p.length > 1)));
   }
 
   private add(x: number, image: RegularShape): void {
@@ -98,22 +99,32 @@ export class Plan {
     this.lines.addFeature(feature);
   }
 
+  dispose(): void {
+    this.map.setTarget(undefined);
+    this.map.dispose();
+  }
+
   private place(x: number): number[] | null {
-    for (const line of this.axis) {
-      const i = lowerBound(Float64Array.from(line.x), x);
-      if (i === 0 && x < line.x[0] - 1) continue;
-      if (i >= line.x.length) continue;
-      if (i === 0) return [line.easting[0], line.northing[0]];
-      const f = (x - line.x[i - 1]) / (line.x[i] - line.x[i - 1]);
-      return [line.easting[i - 1] + f * (line.easting[i] - line.easting[i - 1]), line.northing[i - 1] + f * (line.northing[i] - line.northing[i - 1])];
+    for (const line of this.survey.plan) {
+      const at = this.on(line, x);
+      if (at) return at;
     }
     return null;
+  }
+
+  /** The point of a polyline at a place; null outside it. */
+  private on(line: Polyline, x: number): number[] | null {
+    const i = lowerBound(line.x, x);
+    if (i >= line.x.length) return null;
+    if (i === 0) return x < line.x[0] - 1 ? null : [line.easting[0], line.northing[0]];
+    const f = (x - line.x[i - 1]) / (line.x[i] - line.x[i - 1]);
+    return [line.easting[i - 1] + f * (line.easting[i] - line.easting[i - 1]), line.northing[i - 1] + f * (line.northing[i] - line.northing[i - 1])];
   }
 
   private nearest(easting: number, northing: number): number | null {
     let best = Infinity;
     let x: number | null = null;
-    for (const line of this.axis) {
+    for (const line of this.survey.plan) {
       line.easting.forEach((e, i) => {
         const d = Math.hypot(e - easting, line.northing[i] - northing);
         if (d < best) [best, x] = [d, line.x[i]];

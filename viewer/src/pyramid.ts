@@ -36,7 +36,8 @@ function reduce(series: Series): Series {
   return out;
 }
 
-export function lowerBound(x: Float64Array, value: number): number {
+/** Index of the first element that is not less. */
+export function lowerBound(x: ArrayLike<number>, value: number): number {
   let low = 0;
   let high = x.length;
   while (low < high) {

@@ -102,7 +102,7 @@ export class Strip {
     return {
       width,
       height,
-      padding: [3, 8, 3, 0],
+      padding: [3, 26, 3, 0],
       legend: { show: false },
       cursor: { y: false, drag: { x: true, y: false, setScale: false }, points: { show: false } },
       scales: {
@@ -122,13 +122,13 @@ export class Strip {
           gap: 6,
           grid,
           splits: (_u, _i, low, high) => this.axis.ticks(low, high, ((high - low) * 110) / Math.max(width, 1)),
-          values: (_u, v) => v.map((x) => (last ? this.axis.text(x, tickDigits(v)) : '')),
+          values: (_u, v) => v.map((x) => (last ? this.axis.tick(x, v.length > 1 ? v[1] - v[0] : 1) : '')),
         },
         { ...ticks, size: scaleWidth, gap: 6, space: 16, grid, values: (_u, v) => v.map((y) => minus(y)) },
       ],
       hooks: {
         drawClear: [(u) => this.drawLimits(u)],
-        draw: [(u) => this.drawMarks(u)],
+        draw: [(u) => this.drawMarks(u, last)],
         setCursor: [(u) => u.cursor.event && u.cursor.left! >= 0 && this.events.cursor(u.posToVal(u.cursor.left!, 'x'))],
         setSelect: [
           (u) => {
@@ -180,7 +180,7 @@ export class Strip {
     this.value.className = over ? `over-${over.class}` : '';
     if (this.info.companion && companion) {
       const radius = 1000 / Math.abs(reading.value);
-      this.value.textContent = Math.abs(reading.value) < 2 * half || radius > 30000 ? 'straight' : `R ${Math.round(radius)} ${reading.value > 0 ? 'right' : 'left'}`;
+      this.value.textContent = Math.abs(reading.value) < 2 * half || radius > 30000 ? 'straight' : `R ${radius < 10000 ? Math.round(radius) : `${Math.round(radius / 1000)} km`} ${reading.value > 0 ? 'right' : 'left'}`;
       second = `${this.info.companion.title} ${minus(companion.value, 0)} ${this.info.companion.unit}`;
     }
     this.half.textContent = second;
@@ -220,11 +220,11 @@ export class Strip {
     let b = high ?? 0;
     // Noise is not blown up to look like a fault: at least a few times the last digit shown.
     const least = 20 * 10 ** -this.info.digits;
-    if (this.limitsScale) {
-      for (const limit of this.info.limits) {
-        if (limit.low !== null) a = Math.min(a, limit.low);
-        if (limit.high !== null) b = Math.max(b, limit.high);
-      }
+    if (this.limitsScale && this.info.limits.length > 0) {
+      // The mildest limit is always seen; the others as soon as the values come near.
+      const { low: lowest, high: highest } = this.info.limits[0];
+      if (lowest !== null) a = Math.min(a, 1.05 * lowest);
+      if (highest !== null) b = Math.max(b, 1.05 * highest);
     }
     return padded(a, b, least);
   }
@@ -256,7 +256,7 @@ export class Strip {
     ctx.restore();
   }
 
-  private drawMarks(u: uPlot): void {
+  private drawMarks(u: uPlot, last: boolean): void {
     const { ctx, bbox } = u;
     const [from, to] = [u.scales.x.min!, u.scales.x.max!];
     ctx.save();
@@ -276,6 +276,7 @@ export class Strip {
     ctx.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
     ctx.textAlign = 'center';
     ctx.textBaseline = 'middle';
+    if (last) this.labelJumps(u);
     for (const e of this.exceedances) {
       if (e.peakAt < from || e.peakAt > to) continue;
       ctx.fillStyle = css(limitStyle[e.class].color);
@@ -283,6 +284,23 @@ export class Strip {
       ctx.fillText(limitStyle[e.class].glyph, u.valToPos(e.peakAt, 'x', true), y);
     }
     ctx.restore();
+  }
+
+  /** "18+215 = 18+200, -15 m" over the ticks below a jump, where there is room. */
+  private labelJumps(u: uPlot): void {
+    const { ctx, bbox } = u;
+    let free = bbox.left;
+    for (const jump of this.axis.jumps()) {
+      const x = u.valToPos(jump.x, 'x', true);
+      const half = ctx.measureText(jump.label).width / 2 + 8 * devicePixelRatio;
+      if (x - half < free || x < bbox.left || x > bbox.left + bbox.width) continue;
+      const middle = Math.min(x, u.ctx.canvas.width - half);
+      ctx.fillStyle = css('--background');
+      ctx.fillRect(middle - half, bbox.top + bbox.height + 2, 2 * half, ctx.canvas.height);
+      ctx.fillStyle = css('--text');
+      ctx.fillText(jump.label, middle, bbox.top + bbox.height + 14 * devicePixelRatio);
+      free = middle + half;
+    }
   }
 }
 
@@ -294,10 +312,4 @@ function padded(low: number, high: number, least: number): [number, number] {
   }
   const margin = 0.08 * (b - a);
   return [a - margin, b + margin];
-}
-
-/** Ticks a metre or more apart need no decimals. */
-function tickDigits(ticks: number[]): number {
-  const step = ticks.length > 1 ? ticks[1] - ticks[0] : 1;
-  return step < 0.95 ? 1 : 0;
 }

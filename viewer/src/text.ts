@@ -11,9 +11,9 @@ export function minus(value: number, digits?: number): string {
 export function percent(probability: number | null): string {
   if (probability === null || !Number.isFinite(probability)) return '–';
   const p = Math.round(100 * probability);
-  if (p === 100 && probability < 1) return '>99 %';
-  if (p === 0 && probability > 0) return '<1 %';
-  return `${p} %`;
+  if (p === 100 && probability < 1) return '>99%';
+  if (p === 0 && probability > 0) return '<1%';
+  return `${p}%`;
 }
 
 /** Speaks to a screen reader; the same text twice is spoken once. */

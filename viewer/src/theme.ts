@@ -22,6 +22,15 @@ export function nextTheme(): Theme {
   return next;
 }
 
+/** Another theme for a while, as for paper; call the answer to go back. */
+export function withTheme(theme: Theme): () => void {
+  const before = currentTheme();
+  document.documentElement.dataset.theme = theme;
+  return () => {
+    document.documentElement.dataset.theme = before;
+  };
+}
+
 export function css(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }

@@ -24,6 +24,9 @@ struct ViewContent {
   std::function<std::optional<std::string>()> report;
   /// Takes the reviewer's constraints; the error goes back to the page. Empty: there is nothing to review.
   std::function<Expected<void>(const std::string& json)> put_constraints;
+  /// Places that a person marked: a JSON array, kept beside the result.
+  std::function<std::string()> marks_json;
+  std::function<Expected<void>(const std::string& json)> put_marks;
 };
 
 struct ViewAddress {
@@ -33,7 +36,7 @@ struct ViewAddress {
 
 /// Serves one open result on 127.0.0.1, and nowhere else. A request needs the server's own Host header, the token in
 /// X-Versine-Token (the page and its assets, which hold no data, do not), the server's own Origin where one is sent,
-/// and GET or HEAD; POST is allowed for the constraints alone. Paths are looked up in an exact map, never on disk.
+/// and GET or HEAD; POST is allowed for constraints and marks alone. Paths are looked up in an exact map, never on disk.
 class ViewServer {
  public:
   [[nodiscard]] static Expected<ViewServer> start(ViewContent content, ViewAddress address = {});
