@@ -203,13 +203,17 @@ Expected<RunMileage> synchronise_mileage(const GeometryInput& input, const Geome
     }
   } else {
     if (options.mileage_source == MileageSource::odometer) {
-      const auto odometer = combine_odometers(input.odometers, &trajectory, {}, out.record);
+      OdometerOptions wheels;
+      wheels.forward = geodesy::to_matrix(input.trolley.mounting).transpose().col(0);
+      const auto [odometer, scale, sigma] = combine_odometers(input.odometers, &trajectory, wheels, out.record);
       if (odometer.size() < 2) {
         return fail({.field = "odometer",
                      .found = "no odometer recording",
                      .expected = "at least one odometer, for mileage = \"odometer\"",
                      .advice = "add [[odometer]] to the job or take mileage from the trajectory"});
       }
+      out.record.warnings.push_back(
+          fmt::format("odometers: scale {:.6f} by the trajectory's way, {:.6f} left of it", scale, sigma));
       for (std::size_t i = 0; i < way.size(); ++i) way[i] = distance_at(odometer, trajectory[i].time);
     }
     auto along = along_marks(input, options, way, out.direction);

@@ -13,19 +13,30 @@ namespace {
 
 using Odometer = Series<sensors::OdometerSample>;
 
-/// Signed horizontal way along the body's axis: the trajectory as an odometer.
-Odometer way_of(const geodesy::Trajectory& trajectory) {
-  Odometer out;
-  out.scale = trajectory.scale;
-  double way = 0.0;
+/// The trajectory as an odometer, signed along the trolley's axis.
+struct Way {
+  Odometer level;         ///< horizontal, m
+  Odometer rail;          ///< along the slope, as a wheel counts it, m
+  double variance = 0.0;  ///< of the horizontal way from end to end, m^2
+};
+
+Way way_of(const geodesy::Trajectory& trajectory, const Eigen::Vector3d& forward) {
+  Way out;
+  out.level.scale = out.rail.scale = trajectory.scale;
+  double level = 0.0, rail = 0.0;
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    const Eigen::Vector3d x = trajectory[i].q_nb * forward;
+    const Eigen::Vector3d along = Eigen::Vector3d(x.x(), x.y(), 0.0).normalized();
     if (i > 0) {
-      const auto& p = trajectory[i - 1];
-      const Eigen::Vector3d d = geodesy::wgs84.ned_difference(p.position, trajectory[i].position);
-      const Eigen::Vector3d x = trajectory[i].q_nb * Eigen::Vector3d::UnitX();
-      way += (d.x() * x.x() + d.y() * x.y()) / std::max(1e-9, std::hypot(x.x(), x.y()));
+      const Eigen::Vector3d d = geodesy::wgs84.ned_difference(trajectory[i - 1].position, trajectory[i].position);
+      level += d.dot(along);
+      rail += d.dot(x);
     }
-    out.samples.push_back({trajectory[i].time, way});
+    if (i == 0 || i + 1 == trajectory.size()) {
+      out.variance += along.dot(trajectory[i].position_covariance.matrix() * along);
+    }
+    out.level.samples.push_back({trajectory[i].time, level});
+    out.rail.samples.push_back({trajectory[i].time, rail});
   }
   return out;
 }
@@ -88,26 +99,26 @@ double distance_at(const Odometer& odometer, Time t) {
   return a.distance + (b.distance - a.distance) * ((t - a.time).seconds() / (b.time - a.time).seconds());
 }
 
-Odometer combine_odometers(std::span<const Odometer> odometers, const geodesy::Trajectory* trajectory,
-                           const OdometerOptions& options, RunRecord& record) {
+CombinedOdometer combine_odometers(std::span<const Odometer> odometers, const geodesy::Trajectory* trajectory,
+                                   const OdometerOptions& options, RunRecord& record) {
   std::vector<Odometer> wheels;
   for (const Odometer& o : odometers) {
     if (o.size() > 1) wheels.push_back(o);
   }
-  if (wheels.empty()) return {};
+  CombinedOdometer result{{}, 1.0, options.scale_sigma};
+  if (wheels.empty()) return result;
   const bool has_way = trajectory != nullptr && trajectory->size() > 1;
-  const Odometer way = has_way ? way_of(*trajectory) : Odometer{};
-  if (wheels.size() == 1 && !has_way) return wheels.front();
+  const Way way = has_way ? way_of(*trajectory, options.forward) : Way{};
   const Odometer& a = wheels[0];
-  const Odometer& b = wheels.size() > 1 ? wheels[1] : way;
+  const Odometer& b = wheels.size() > 1 ? wheels[1] : (has_way ? way.rail : a);
   const std::vector<Time> times = windows(a, options.window);
-  const double rb = ratio(a, b, times), rw = has_way ? ratio(a, way, times) : 1.0;
+  const double rb = ratio(a, b, times), rw = has_way ? ratio(a, way.rail, times) : 1.0;
   // Both wheels are brought to a common scale before they are compared; the mean keeps both calibrations' weight.
   const double to_mean = wheels.size() > 1 ? 0.5 * (1.0 + rb) : 1.0;
-  Odometer out;
+  Odometer& out = result.odometer;
   out.scale = a.scale;
   out.samples.push_back({times.front(), 0.0});
-  double sum = 0.0;
+  double sum = 0.0, without_slip = 0.0, way_without_slip = 0.0;
   for (std::size_t k = 1; k < times.size(); ++k) {
     const auto increment = [&](const Odometer& o) { return distance_at(o, times[k]) - distance_at(o, times[k - 1]); };
     const double da = increment(a), db = increment(b) / rb;
@@ -115,7 +126,7 @@ Odometer combine_odometers(std::span<const Odometer> odometers, const geodesy::T
     const bool slip = std::abs(da - db) > options.slip_distance;
     if (slip) {
       if (has_way) {
-        const double dw = increment(way) / rw;
+        const double dw = increment(way.rail) / rw;
         d = std::abs(da - dw) < std::abs(db - dw) || wheels.size() == 1 ? da : db;
         if (std::abs(d - dw) > options.slip_distance) d = dw;  // both slipped, or the only one did
       } else {
@@ -129,15 +140,32 @@ Odometer combine_odometers(std::span<const Odometer> odometers, const geodesy::T
                                  .action = Finding::Action::repaired,
                                  .detail = fmt::format("{:.4f} m against {:.4f} m, taken {:.4f} m", da, db, d)});
     }
-    sum += d * to_mean;
+    double to_level = to_mean;
+    if (has_way) {
+      const double level = increment(way.level), rail = increment(way.rail);
+      if (std::abs(rail) > 0.1 * options.window) to_level *= level / rail;
+      if (!slip) {
+        without_slip += d * to_level;
+        way_without_slip += level;
+      }
+    }
+    sum += d * to_level;
     // Within the window the first wheel's own course is kept.
     for (std::size_t i = a.lower_bound(times[k - 1]) + 1; i < a.lower_bound(times[k]) && !slip; ++i) {
       const double part = std::abs(da) > 1e-6 ? (a[i].distance - distance_at(a, times[k - 1])) / da : 0.0;
-      out.samples.push_back({a[i].time, sum - d * to_mean * (1.0 - part)});
+      out.samples.push_back({a[i].time, sum - d * to_level * (1.0 - part)});
     }
     out.samples.push_back({times[k], sum});
   }
-  return out;
+  const double prior = options.scale_sigma * options.scale_sigma;
+  if (has_way && prior > 0.0 && std::abs(without_slip) > 10.0 * options.window) {
+    const double measured = way.variance / (way_without_slip * way_without_slip);
+    const double weight = prior / (prior + measured);
+    result.scale = 1.0 + weight * (way_without_slip / without_slip - 1.0);
+    result.scale_sigma = std::sqrt(weight * measured);
+    for (auto& s : out.samples) s.distance *= result.scale;
+  }
+  return result;
 }
 
 }  // namespace versine::track
