@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -43,9 +44,8 @@ std::size_t settle(const Band& band, double step) {
   return static_cast<std::size_t>(3.0 * band.longest / step);
 }
 
-void add_band(Stage& s, const Band& band, Rail rail, bool lateral, const std::vector<double>& signal,
-              const char* source) {
-  const auto sections = band_pass(band.shortest, band.longest, s.options.step, s.options.filter_order);
+Column& add_band(Stage& s, const Band& band, const std::vector<Biquad>& sections, Rail rail, bool lateral,
+                 const std::vector<double>& signal, const char* source) {
   Column& c = s.out.add(
       fmt::format("{}_{}_{}", lateral ? "alignment" : "level", name_of(rail), band.name), "mm", 1e-3,
       fmt::format(
@@ -53,12 +53,17 @@ void add_band(Stage& s, const Band& band, Rail rail, bool lateral, const std::ve
           lateral ? "Alignment" : "Longitudinal level", name_of(rail), metres(band.shortest), metres(band.longest),
           source, s.options.filter_order));
   c.value = filter_both_ways(sections, signal, settle(band, s.options.step));
-  // Bounded by the versine of a chord as long as the band's longest wavelength: its gain is 1 or more over the band.
-  const double half = std::max(5.0, 5.0 * std::round(band.longest / 10.0));
-  const bool reference = (rail == Rail::left) == s.rails.reference_is_left;
-  s.relative.fill(c, rail, lateral ? Direction::lateral : Direction::vertical,
-                  {{-half, -0.5}, {0.0, 1.0}, {half, -0.5}},
-                  s.input.trolley.contact_sigma * (reference ? std::sqrt(0.5) : 1.0));
+  return c;
+}
+
+/// What the band's filter makes of a single point, as far as it matters.
+std::vector<double> response_of(const std::vector<Biquad>& sections, const Band& band, double step) {
+  const auto reach = static_cast<std::size_t>(2.5 * band.longest / step);
+  std::vector<double> impulse(8 * reach + 1, 0.0);
+  impulse[4 * reach] = 1.0;
+  impulse = filter_both_ways(sections, impulse, 0);
+  const auto middle = impulse.begin() + static_cast<std::ptrdiff_t>(4 * reach);
+  return {middle - static_cast<std::ptrdiff_t>(reach), middle + static_cast<std::ptrdiff_t>(reach) + 1};
 }
 
 /// Points near the ends of each piece, where the longest band has not settled.
@@ -91,21 +96,34 @@ void add_bands(Stage& s) {
     }
   }
   if (bands.empty()) return;
+  struct Signals {
+    std::vector<double> lateral, vertical;
+    const char *from_lateral, *from_vertical;
+  };
+  std::vector<Signals> rails;
   for (const Rail rail : {Rail::left, Rail::right}) {
     const Column* lateral = s.out.find(fmt::format("deviation_lateral_{}", name_of(rail)));
     const Column* vertical = s.out.find(fmt::format("deviation_vertical_{}", name_of(rail)));
-    std::vector<double> y =
-        lateral != nullptr ? lateral->value : unrolled(line_of(s.rails, rail), s.options.step, longest);
-    const std::vector<double> z = vertical != nullptr ? vertical->value : line_of(s.rails, rail).height;
-    for (std::size_t i = 0; i < y.size(); ++i) {
-      if (!placed(s.rails, rail, i)) y[i] = std::numeric_limits<double>::quiet_NaN();
+    Signals x{lateral != nullptr ? lateral->value : unrolled(line_of(s.rails, rail), s.options.step, longest),
+              vertical != nullptr ? vertical->value : line_of(s.rails, rail).height,
+              lateral != nullptr ? "deviation from design" : "the rail's curvature",
+              vertical != nullptr ? "deviation from design" : "heights"};
+    for (std::size_t i = 0; i < x.lateral.size(); ++i) {
+      if (!placed(s.rails, rail, i)) x.lateral[i] = std::numeric_limits<double>::quiet_NaN();
     }
-    const char* from_y = lateral != nullptr ? "deviation from design" : "the rail's curvature";
-    const char* from_z = vertical != nullptr ? "deviation from design" : "heights";
-    for (const Band& band : bands) {
-      add_band(s, band, rail, true, y, from_y);
-      add_band(s, band, rail, false, z, from_z);
+    rails.push_back(std::move(x));
+  }
+  const double contact = s.input.trolley.contact_sigma, mean = contact * std::sqrt(0.5);
+  const double left = s.rails.reference_is_left ? mean : contact, right = s.rails.reference_is_left ? contact : mean;
+  for (const Band& band : bands) {
+    const auto sections = band_pass(band.shortest, band.longest, s.options.step, s.options.filter_order);
+    std::array<Column*, 4> columns{};
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Rail rail = k == 0 ? Rail::left : Rail::right;
+      columns[2 * k] = &add_band(s, band, sections, rail, true, rails[k].lateral, rails[k].from_lateral);
+      columns[2 * k + 1] = &add_band(s, band, sections, rail, false, rails[k].vertical, rails[k].from_vertical);
     }
+    s.relative.fill_filtered(columns, response_of(sections, band, s.options.step), {left, left, right, right});
   }
   flag_edges(s.out, longest);
 }

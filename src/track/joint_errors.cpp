@@ -94,4 +94,37 @@ std::vector<double> JointErrors::variance(std::span<const Term> terms, std::span
   return out;
 }
 
+std::vector<std::vector<double>> JointErrors::filtered_variance(std::span<const float> weights,
+                                                                std::span<const std::span<const ErrorRow>> rows,
+                                                                std::size_t every) const {
+  const std::size_t n = size(), reach = weights.size() / 2, kinds = rows.size();
+  std::vector<std::vector<double>> out(kinds, std::vector<double>(n, std::numeric_limits<double>::quiet_NaN()));
+  if (n < 2 * reach + 1) return out;
+  const auto dim = covariance_[0].rows();
+  // carried.col(r): sum over the nodes before of (A_i ... A_{k-1})^T h_i w_i, so that its product with P_k h_k w_k is
+  // the covariance of all of them with node k.
+  Eigen::MatrixXf carried(dim, static_cast<Eigen::Index>(kinds)), moved = carried;
+  for (std::size_t node = reach; node + reach < n; node += every) {
+    const std::size_t begin = reversed_ ? n - 1 - node - reach : node - reach;  // in order of time
+    carried.setZero();
+    std::vector<double> sum(kinds, 0.0);
+    for (std::size_t j = 0; j < weights.size(); ++j) {
+      const std::size_t k = begin + j, place = reversed_ ? n - 1 - k : k;
+      if (j > 0) {
+        moved.noalias() = gain_[k - 1].transpose() * carried;
+        carried.swap(moved);
+      }
+      for (std::size_t r = 0; r < kinds; ++r) {
+        const ErrorRow h = weights[j] * rows[r][place];
+        const Eigen::VectorXf ph = covariance_[k].leftCols<6>() * h;
+        auto column = carried.col(static_cast<Eigen::Index>(r));
+        sum[r] += 2.0 * double(column.dot(ph)) + double(h.dot(ph.head<6>()));
+        column.head<6>() += h;
+      }
+    }
+    for (std::size_t r = 0; r < kinds; ++r) out[r][node] = std::max(sum[r], 0.0);
+  }
+  return out;
+}
+
 }  // namespace versine::track

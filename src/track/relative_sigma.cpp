@@ -49,23 +49,58 @@ void RelativeSigma::fill(Column& column, Rail rail, Direction direction,
                          const std::vector<std::pair<double, double>>& terms, double white, double factor) {
   if (!known()) return;
   std::vector<JointErrors::Term> nodes;
-  double white_variance = 0.0;
+  double white_variance = 0.0, stretch = 1.0;
   for (const auto& [distance, weight] : terms) {
     auto node = std::llround(distance / node_step_);
-    if (node == 0 && distance != 0.0) node = distance > 0.0 ? 1 : -1;  // never let two places fall together
+    if (node == 0 && distance != 0.0) {
+      // Never let two places fall together. Errors gather like a random walk over so short a way.
+      node = distance > 0.0 ? 1 : -1;
+      stretch = std::min(stretch, std::abs(distance) / node_step_);
+    }
     nodes.push_back({static_cast<std::ptrdiff_t>(node), weight});
     white_variance += weight * weight * white * white;
   }
   const std::size_t rows =
       direction == Direction::roll ? 4 : (rail == Rail::left ? 0u : 2u) + (direction == Direction::lateral ? 0u : 1u);
   std::vector<double> v = joint_->variance(nodes, rows_[rows]);
-  // Near the ends a rounded distance may leave the run by one node: the nearest known value stands in.
-  for (std::size_t i = 1; i < v.size(); ++i) {
-    if (std::isnan(v[i])) v[i] = v[i - 1];
+  for (double& x : v) x *= stretch;
+  put(column, std::move(v), white_variance, factor);
+}
+
+void RelativeSigma::fill_filtered(const std::array<Column*, 4>& columns, const std::vector<double>& response,
+                                  const std::array<double, 4>& white) {
+  if (!known()) return;
+  // Errors between two nodes lie on the line between them: each grid weight goes to both by its distance.
+  const auto middle = static_cast<std::ptrdiff_t>(response.size() / 2), stride = static_cast<std::ptrdiff_t>(stride_);
+  const std::ptrdiff_t reach = middle / stride + 1;
+  std::vector<float> weights(static_cast<std::size_t>(2 * reach + 1), 0.0f);
+  double squares = 0.0;
+  for (std::ptrdiff_t i = -middle; i <= middle; ++i) {
+    const double w = response[static_cast<std::size_t>(i + middle)], at = double(i) / double(stride);
+    const auto left = static_cast<std::ptrdiff_t>(std::floor(at));
+    const double part = at - double(left);
+    weights[static_cast<std::size_t>(left + reach)] += static_cast<float>(w * (1.0 - part));
+    if (part > 0.0) weights[static_cast<std::size_t>(left + 1 + reach)] += static_cast<float>(w * part);
+    squares += w * w;
   }
-  for (std::size_t i = v.size(); i-- > 1;) {
-    if (std::isnan(v[i - 1])) v[i - 1] = v[i];
+  const std::array<std::span<const ErrorRow>, 4> rows = {rows_[0], rows_[1], rows_[2], rows_[3]};
+  // Sigmas change over hundreds of metres: a fifth of the filter's reach is close enough.
+  const auto variance = joint_->filtered_variance(weights, rows, std::max<std::size_t>(1, weights.size() / 10));
+  for (std::size_t k = 0; k < 4; ++k) put(*columns[k], variance[k], squares * white[k] * white[k], 1.0);
+}
+
+void RelativeSigma::put(Column& column, std::vector<double> v, double white_variance, double factor) const {
+  // Known at some nodes: lines between them; outside the first or last one stands in.
+  std::size_t last = v.size();
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (std::isnan(v[i])) continue;
+    for (std::size_t k = last == v.size() ? 0 : last + 1; k < i; ++k) {
+      v[k] = last == v.size() ? v[i] : v[last] + (v[i] - v[last]) * double(k - last) / double(i - last);
+    }
+    last = i;
   }
+  if (last == v.size()) return;
+  for (std::size_t k = last + 1; k < v.size(); ++k) v[k] = v[last];
   for (std::size_t i = 0; i < column.value.size(); ++i) {
     if (!std::isfinite(column.value[i])) continue;
     const std::size_t k = std::min(i / stride_, v.size() - 1), m = std::min(k + 1, v.size() - 1);

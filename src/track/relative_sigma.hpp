@@ -25,8 +25,13 @@ class RelativeSigma {
   /// Fills `column.sigma` where it has values; leaves NaN without a chain.
   void fill(Column& column, Rail rail, Direction direction, const std::vector<std::pair<double, double>>& terms,
             double white, double factor = 1.0);
+  /// Sigmas of what a filter leaves of both rails' deviations, in four columns: left lateral, left vertical, right
+  /// lateral, right vertical. `response`: the filter's impulse response on the grid, symmetric; `white` per column.
+  void fill_filtered(const std::array<Column*, 4>& columns, const std::vector<double>& response,
+                     const std::array<double, 4>& white);
 
  private:
+  void put(Column& column, std::vector<double> variance, double white_variance, double factor) const;
   static constexpr double spacing = 5.0;  ///< of the nodes, m: errors of a smoothed trajectory bend over tens of metres
   std::size_t stride_ = 1;                ///< grid points per node
   double node_step_ = spacing;

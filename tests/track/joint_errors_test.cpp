@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <array>
 #include <random>
 
 namespace versine::track {
@@ -62,6 +63,25 @@ void compare(bool reversed) {
   }
   EXPECT_TRUE(std::isnan(v[3]));
   EXPECT_TRUE(std::isnan(v[26]));
+
+  // A filter over the same nodes, every third of them, for two kinds of rows at once.
+  const std::vector<float> weights = {-0.3f, -0.1f, 0.2f, 0.9f, 0.2f, -0.1f, -0.3f};
+  const std::vector<ErrorRow> doubled = [&] {
+    std::vector<ErrorRow> d = rows;
+    for (ErrorRow& r : d) r *= 2.0f;
+    return d;
+  }();
+  const std::array<std::span<const ErrorRow>, 2> kinds = {rows, doubled};
+  const auto f = joint.filtered_variance(weights, kinds, 3);
+  for (std::size_t i = 3; i + 3 < 30; i += 3) {
+    std::vector<JointErrors::Term> same;
+    for (int k = -3; k <= 3; ++k) same.push_back({k, weights[static_cast<std::size_t>(k + 3)]});
+    const double expected = joint.variance(same, rows)[i];
+    EXPECT_NEAR(f[0][i], expected, 1e-4 * (1 + expected)) << i;
+    EXPECT_NEAR(f[1][i], 4 * expected, 4e-4 * (1 + expected)) << i;
+    EXPECT_TRUE(std::isnan(f[0][i + 1]));
+  }
+  EXPECT_TRUE(std::isnan(f[0][0]));
 }
 
 TEST(JointErrors, VarianceEqualsTheDirectSum) {

@@ -31,6 +31,12 @@ class JointErrors {
   /// Variance, at each node i, of sum over terms of weight * rows[i + node] . e(i + node); NaN where a term leaves
   /// the run. Keeps the covariances of each distance for the next call.
   [[nodiscard]] std::vector<double> variance(std::span<const Term> terms, std::span<const ErrorRow> rows);
+  /// The same for a filter: weights of the nodes from -m to m about each node, symmetric (2 m + 1 of them). At every
+  /// `every`-th node; NaN elsewhere and where the filter leaves the run. Several kinds of rows go in one pass, since
+  /// each pass carries vectors along the chain: linear in the number of weights.
+  [[nodiscard]] std::vector<std::vector<double>> filtered_variance(std::span<const float> weights,
+                                                                   std::span<const std::span<const ErrorRow>> rows,
+                                                                   std::size_t every) const;
 
  private:
   using Matrix6 = Eigen::Matrix<float, 6, 6>;
