@@ -42,8 +42,8 @@ std::string survey_job_for(const SimulateConfig& c, const simulation::SimulatedR
     text += fmt::format("\n[gnss]\nfile = \"gnss.csv\"\nlever_arm_m = {}\n", list(C_bv * c.gnss.antenna));
     // A receiver tells one sigma; that part of its errors stays alike for minutes is for the job to say.
     if (c.gnss.correlated_horizontal > 0.0) {
-      text += fmt::format("bias_sigma_m = {:.6g}\nbias_time_s = {:.6g}\n", c.gnss.correlated_horizontal,
-                          c.gnss.correlation_time);
+      text += fmt::format("bias_sigma_m = {:.6g}\nbias_sigma_up_m = {:.6g}\nbias_time_s = {:.6g}\n",
+                          c.gnss.correlated_horizontal, c.gnss.correlated_vertical, c.gnss.correlation_time);
     }
   }
   for (std::size_t i = 0; i < r.odometers.size(); ++i) {
@@ -58,8 +58,15 @@ std::string survey_job_for(const SimulateConfig& c, const simulation::SimulatedR
     if (!c.has_vehicle) text += wheel_noise(c.scenario.equipment.odometers.front());
   }
   if (!c.has_vehicle) {
-    // Rollers on rails: nothing but the rails' own irregularity moves a trolley sideways.
-    text += "\n[constraint]\nsigma_mps = 0.0001\nangle_rad = 0.0001\n\n[standstill]\nsigma_mps = 0.0003\n";
+    // Rollers on rails: nothing but the rails' own irregularity moves a trolley sideways. Over metres a wheelbase of
+    // 1.2 m cancels it: 0.01 mm per metre is left on slab track, ten times that elsewhere; single angles are larger.
+    const auto spectrum = c.scenario.track.spectrum;
+    const bool smooth = spectrum == simulation::Spectrum::none || spectrum == simulation::Spectrum::china_ballastless;
+    const double rough = smooth ? 1.0 : 10.0;
+    text += fmt::format(
+        "\n[constraint]\nsigma_mps = {:.6g}\nangle_rad = {:.6g}\npeak_rad = {:.6g}\n\n[standstill]\nsigma_mps = "
+        "0.00003\n",
+        2e-5 * rough, 1e-5 * rough, 2e-4 * rough);
   }
   if (!r.landmarks.empty()) {
     text +=
@@ -82,6 +89,12 @@ std::string survey_job_for(const SimulateConfig& c, const simulation::SimulatedR
         "contact_z_m = {:.6g}\nrange_x_m = {:.6g}\ngauge_offset_mm = {:.9g}\ngauge_temperature_mm_per_degC = {:.6g}\n",
         trolley.front_x, trolley.rear_x, trolley.other_x, trolley.reference_y, trolley.contact_z, trolley.range_x,
         trolley.gauge_offset / units::mm, trolley.gauge_temperature_factor / units::mm);
+    // Simulated wheels are clean: what is left is the shortest waves at a step of 0.25 m, and the gauge's noise in as
+    // many readings.
+    const auto& legs = c.scenario.motion.legs;
+    const double readings = legs.empty() ? 1.0 : std::max(1.0, 0.25 * c.gauge.rate / legs.front().speed);
+    text += fmt::format("contact_sigma_mm = 0.012\ngauge_sigma_mm = {:.3g}\n",
+                        std::hypot(c.gauge.noise / std::sqrt(readings), c.gauge.offset_error) / units::mm);
     if (!r.gauge.empty()) text += "[geometry.gauge]\nfile = \"gauge.csv\"\n";
     if (!r.sleeper.empty()) text += "[geometry.sleeper]\nfile = \"sleeper.csv\"\n";
   }

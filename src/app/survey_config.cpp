@@ -86,6 +86,7 @@ void describe_gnss(ConfigVisitor& v, SurveyConfig& c) {
           {.doc = "The receiver's standard deviations are multiplied by this.", .max = 1000, .positive = true});
   v.value("sigma_minimum_m", e.gnss_sigma_minimum, metres("None is taken smaller than this."));
   v.value("bias_sigma_m", e.gnss_bias, metres("Slowly varying error of the positions, estimated when above 0."));
+  v.value("bias_sigma_up_m", e.gnss_bias_up, metres("The same of heights; 0: as bias_sigma_m."));
   v.value("bias_time_s", e.gnss_bias_time, seconds("Its correlation time."));
 }
 
@@ -120,6 +121,12 @@ void describe_wheels(ConfigVisitor& v, SurveyConfig& c) {
             {.doc = "Motion across per motion forward (irregularity, side slip).", .unit = "rad", .min = 0, .max = 1});
     t.value("correlation_m", e.constraint_correlation, metres("Over this distance that angle stays alike."));
     t.value("interval_s", e.constraint_interval, seconds("Between two applications; 0: every covariance step."));
+    t.value("peak_rad", e.constraint_peak,
+            {.doc = "Single angles may be so much larger before they count as faults: short irregularities, which a "
+                    "wheelbase on cancel.",
+             .unit = "rad",
+             .min = 0,
+             .max = 1});
   });
   v.table("standstill", "Zero velocity and zero turn rate while the vehicle stands.", [&](ConfigVisitor& t) {
     t.value("on", e.zero_velocity, {.doc = "Detect standstill and use it."});

@@ -90,6 +90,8 @@ class Forward {
     dt_ = (end - begin).seconds();
     mean_rate_ib_ = turned / dt_;
     way_ = std::abs(way);
+    // The estimate fades as its error does (NoiseModel), or the filter believes in a bias that is long gone.
+    if (l_.gnss_bias.enabled()) e.gnss_bias *= std::exp(-dt_ / o_.gnss_bias_time);
 
     step_.noise = {dt_, way_, std::exchange(inflation_, 0.0), !distance_known_ || restart_distance_};
     const auto reading =
@@ -192,16 +194,19 @@ class Forward {
     const double alike = std::max(1.0, 2.0 * o_.constraint_correlation / std::max(1e-3, speed * since));
     const double angle = o_.constraint_angle * speed;
     update("constraint", t,
-           constraint(moment_, l_, std::sqrt(std::pow(o_.constraint_sigma, 2) + angle * angle * alike)), true, out);
+           constraint(moment_, l_, std::sqrt(std::pow(o_.constraint_sigma, 2) + angle * angle * alike)), true, out,
+           o_.constraint_peak * speed);
   }
 
-  void update(const char* sensor, Time t, filter::Linearized l, bool often, Steps<N>& out) {
+  /// `peak`: single errors may be so much larger than R tells before they count as faults.
+  void update(const char* sensor, Time t, filter::Linearized l, bool often, Steps<N>& out, double peak = 0.0) {
     const int m = l.rows();
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, filter::max_rows, filter::max_states> a(
         m, l_.size());
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, filter::max_rows, filter::max_rows> S = l.R;
     for (int i = 0; i < m; ++i) a.row(i).noalias() = l.H.row(i).lazyProduct(P_);
     S += a.lazyProduct(l.H.transpose());
+    S.diagonal().array() += peak * peak;
     const Judge::Verdict verdict = judge_.judge(sensor, t, l, S, often);
     if (verdict == Judge::Verdict::doubt_filter) {
       if (std::string_view(sensor) == "odometer")

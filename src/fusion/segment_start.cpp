@@ -187,7 +187,7 @@ Eigen::VectorXd initial_sigma(const AidedInsOptions& o, const InsLayout& l, cons
   set(l.mounting, o.mounting_sigma);
   set(l.gnss_lever, o.gnss_lever.sigma);
   set(l.wheel_lever, o.wheel_lever.sigma);
-  set(l.gnss_bias, o.gnss_bias);
+  if (l.gnss_bias.enabled()) sigma.segment<3>(l.gnss_bias.offset) = o.gnss_bias_sigma();
   return sigma;
 }
 /// A level taken from the accelerometers is off by their bias, and a heading taken from the gyros by theirs: the same

@@ -45,7 +45,8 @@ class NoiseModel {
       const double decay = std::exp(-s.dt / o_.gnss_bias_time);
       t.decay.template segment<3>(l_.gnss_bias.offset).setConstant(decay);
       // Half of the noise acts before the decay (filter::Transition): scaled so that the process is stationary.
-      set(l_.gnss_bias, o_.gnss_bias * o_.gnss_bias * 2.0 * (1.0 - decay * decay) / (1.0 + decay * decay));
+      t.noise.template segment<3>(l_.gnss_bias.offset) =
+          o_.gnss_bias_sigma().cwiseAbs2() * (2.0 * (1.0 - decay * decay) / (1.0 + decay * decay));
     }
   }
 

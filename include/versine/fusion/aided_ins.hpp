@@ -71,7 +71,12 @@ struct AidedInsOptions {
   double gnss_sigma_scale = 1.0;    ///< multiplies the sigmas told by the receiver
   double gnss_sigma_minimum = 0.0;  ///< m; floor of each component
   double gnss_bias = 0.0;           ///< m; sigma of a slowly varying position bias, estimated when positive
+  double gnss_bias_up = 0.0;        ///< m; the same of heights; 0: as gnss_bias
   double gnss_bias_time = 300.0;    ///< s; its correlation time
+  /// North-east-down, m.
+  [[nodiscard]] Eigen::Vector3d gnss_bias_sigma() const {
+    return {gnss_bias, gnss_bias, gnss_bias_up > 0.0 ? gnss_bias_up : gnss_bias};
+  }
 
   // --- odometer and speed
   OdometerUse odometer_use = OdometerUse::distance;
@@ -88,6 +93,9 @@ struct AidedInsOptions {
   double constraint_angle = 0.001;      ///< rad; sideways motion per forward motion (track irregularity, side slip)
   double constraint_correlation = 1.5;  ///< m; over this distance that angle stays alike (wheelbase)
   double constraint_interval = 0.0;     ///< s; 0: at every covariance step
+  /// rad; widens the constraint's gate only. Wheels on short irregularities go sideways and back: single angles are far
+  /// larger than what is left of them over some metres, which is what constraint_angle stands for. They are no faults.
+  double constraint_peak = 0.0;
 
   // --- standing still
   bool zero_velocity = true;
