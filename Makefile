@@ -34,6 +34,7 @@ accuracy: build
 # The pictures of the documentation.
 figures: benchmarks
 	$(BUILD)/benchmarks/versine_simulation_figures docs/images
+	benchmarks/planning_figures.sh $(VERSINE) docs/images
 
 # The programs of benchmarks/, for accuracy tables and timings.
 benchmarks: build

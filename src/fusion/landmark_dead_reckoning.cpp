@@ -35,52 +35,55 @@ DrivingNoise noise_of(const LandmarkOptions& o) {
       .distance_walk = o.distance_walk};
 }
 
-/// Dead reckoning, roll and placement from one start.
-struct Pass {
-  Reckoning reckoning;
-  std::vector<filter::SmoothedEpoch<roll::size>> roll;
-  Placement placed;
-};
-
-/// `turned`: what earlier passes have added to the heading of the alignment.
-Expected<Pass> run_pass(const LandmarkInput& in, const std::vector<std::size_t>& usable, const StaticStart& start,
-                        const Prior& prior, const DrivingNoise& noise, double turned, const LandmarkOptions& o,
-                        Progress& progress) {
-  std::vector<Time> stops;
-  for (const std::size_t i : usable) stops.push_back((*in.landmarks)[i].time);
-  auto reckoning = reckon(*in.imu, *in.odometer, start, (*in.landmarks)[0].position, stops, o, progress);
-  if (!reckoning) return tl::unexpected(reckoning.error());
-  progress.report("landmarks", 0.0);
-  std::vector<RollTie> ties;
-  for (const std::size_t i : usable) {
-    const auto& l = (*in.landmarks)[i];
-    const std::size_t k = node_at(reckoning->nodes, l.time);
-    if (k == 0) continue;
-    if (const auto tie = roll_tie(*in.imu, l, reckoning->nodes[k], k, o)) ties.push_back(*tie);
-  }
-  Pass pass{.reckoning = std::move(*reckoning)};
-  pass.roll = smooth_roll(pass.reckoning.nodes, prior, noise, ties, o.smoother);
-  pass.placed = place(pass.reckoning, in, usable, start, prior, noise, pass.roll, turned, o);
-  return pass;
-}
-
 /// Whether the track turns enough for an error of the aligned heading to change the equivalent biases.
 bool turns(const std::vector<Stretch>& stretches) {
   constexpr double enough = 0.02;  // rad
   return std::any_of(stretches.begin(), stretches.end(), [&](const Stretch& s) { return s.heading_range > enough; });
 }
 
-/// One pass; where the track turns, a second one with the heading that the landmarks have found, so that Earth rate
-/// and gyro bias are shared out right. `turned` takes what the first pass found.
-Expected<Pass> run_passes(const LandmarkInput& in, const std::vector<std::size_t>& usable, StaticStart& start,
-                          const LandmarkOptions& o, double& turned, Progress& progress) {
-  const Prior prior = prior_of(start, o);
+/// Dead reckoning with its roll and how it lies on the landmarks.
+struct Laid {
+  Reckoning reckoning;
+  std::vector<filter::SmoothedEpoch<roll::size>> roll;
+  Placement placed;
+  double turned = 0.0;  ///< rad, what was added to the aligned heading before the placement
+};
+
+/// Roll and placement for the attitudes that the nodes have.
+void lay(Laid& laid, const LandmarkInput& in, const std::vector<std::size_t>& usable, const StaticStart& start,
+         const Prior& prior, const LandmarkOptions& o) {
   const DrivingNoise noise = noise_of(o);
-  auto pass = run_pass(in, usable, start, prior, noise, 0.0, o, progress);
-  if (!pass || !turns(pass->placed.stretches)) return pass;
-  turned = pass->placed.heading;
-  start = with_heading(start, turned, pass->placed.heading_sigma);
-  return run_pass(in, usable, start, prior, noise, turned, o, progress);
+  const auto& nodes = laid.reckoning.nodes;
+  std::vector<RollTie> ties;
+  for (const std::size_t i : usable) {
+    const auto& l = (*in.landmarks)[i];
+    const std::size_t k = node_at(nodes, l.time);
+    if (k == 0) continue;
+    if (const auto tie = roll_tie(*in.imu, l, nodes[k], k, o)) ties.push_back(*tie);
+  }
+  laid.roll = smooth_roll(nodes, prior, noise, ties, o.smoother);
+  laid.placed = place(laid.reckoning, in, usable, start, prior, noise, laid.roll, laid.turned, o);
+}
+
+/// Where the track turns, the nodes are laid a second time with the heading that the landmarks have found, so that
+/// Earth rate and gyro bias are shared out right.
+Expected<Laid> reckon_and_lay(const LandmarkInput& in, const std::vector<std::size_t>& usable, StaticStart& start,
+                              const LandmarkOptions& o, Progress& progress) {
+  std::vector<Time> stops;
+  for (const std::size_t i : usable) stops.push_back((*in.landmarks)[i].time);
+  const geodesy::Geodetic& place_at = (*in.landmarks)[0].position;
+  auto reckoning = reckon(*in.imu, *in.odometer, start, place_at, stops, o, progress);
+  if (!reckoning) return tl::unexpected(reckoning.error());
+  progress.report("landmarks", 0.0);
+  const Prior prior = prior_of(start, o);
+  Laid laid{.reckoning = std::move(*reckoning)};
+  lay(laid, in, usable, start, prior, o);
+  if (!turns(laid.placed.stretches)) return laid;
+  laid.turned = laid.placed.heading;
+  start = with_heading(start, laid.turned, laid.placed.heading_sigma);
+  restart(laid.reckoning.nodes, start, place_at, o);
+  lay(laid, in, usable, start, prior, o);
+  return laid;
 }
 
 /// What became of each landmark, and its innovation.
@@ -114,16 +117,16 @@ Expected<LandmarkSolution> run_landmark_dead_reckoning(const LandmarkInput& inpu
   const auto usable = usable_landmarks(input, options, begin, solution.record);
   if (!usable) return tl::unexpected(usable.error());
   const Prior prior = prior_of(*start, options);
-  auto pass = run_passes(input, *usable, *start, options, result.heading_correction, progress);
-  if (!pass) return tl::unexpected(pass.error());
-  auto& reckoning = pass->reckoning;
-  const Placement& placed = pass->placed;
+  auto laid = reckon_and_lay(input, *usable, *start, options, progress);
+  if (!laid) return tl::unexpected(laid.error());
+  const Reckoning& reckoning = laid->reckoning;
+  const Placement& placed = laid->placed;
   if (auto ok = report_landmarks(input, placed, options, solution.record); !ok) return tl::unexpected(ok.error());
   progress.report("smoothing", 0.0);
-  const Smoothed smoothed = smooth(placed.channels, placed.ties, placed.fits, std::move(pass->roll), options.smoother);
+  const Smoothed smoothed = smooth(placed.channels, placed.ties, placed.fits, std::move(laid->roll), options.smoother);
   if (progress.cancelled()) return fail({.found = "cancelled"});
 
-  result.heading_correction += placed.heading;
+  result.heading_correction = laid->turned + placed.heading;
   result.stretches = placed.stretches;
   result.observability = observability_of(reckoning.nodes, placed.channels, placed.ties, placed.fits, prior, smoothed);
   note_observability(result.observability, begin, input.imu->back().time, solution.record);
@@ -137,7 +140,7 @@ Expected<LandmarkSolution> run_landmark_dead_reckoning(const LandmarkInput& inpu
     solution.chain = error_chain(reckoning.nodes, smoothed, placed.heading, options.chain_interval);
   }
   progress.report("trajectory", 0.0);
-  solution.smoothed = corrected_trajectory(std::move(reckoning), smoothed, placed.heading, placed.scale, options);
+  solution.smoothed = corrected_trajectory(reckoning, *input.imu, smoothed, placed.heading, placed.scale, options);
   solution.smoothed.scale = input.imu->scale;
   progress.report("trajectory", 1.0);
   return result;

@@ -121,11 +121,15 @@ void add_weakest_place(Observability& o, std::span<const double> distance, std::
     first = std::min(first, ties[i].node);
     last = std::max(last, ties[i].node);
   }
-  const char* where = worst_node < first  ? "before the first landmark: nothing holds that end"
-                      : worst_node > last ? "beyond the last landmark: nothing holds that end"
-                                          : "between two landmarks";
-  o.verdict.push_back(fmt::format("position is weakest {:.1f} m from the start ({:.2f} mm), {}.", distance[worst_node],
-                                  worst / units::mm, where));
+  constexpr double near = 1.0;  // m
+  const double at = distance[worst_node], begin = distance[first], end = distance[last];
+  const char* where = begin - at > near ? "before the first landmark: nothing holds that end"
+                      : at - end > near ? "beyond the last landmark: nothing holds that end"
+                      : at - begin < near || end - at < near
+                          ? "at an outermost landmark, which has a neighbour on one side only"
+                          : "between two landmarks";
+  o.verdict.push_back(
+      fmt::format("position is weakest {:.1f} m from the start ({:.2f} mm), {}.", at, worst / units::mm, where));
 }
 
 }  // namespace

@@ -19,7 +19,8 @@ using ChainMatrix = Eigen::Matrix<double, chain_size, chain_size>;
 
 /// Everything that is interpolated between two nodes, as one array of floats and one of doubles.
 struct NodeOutput {
-  Eigen::Array<double, 8, 1> correction;  ///< position error n (3), attitude correction quaternion w x y z (4), speed
+  Eigen::Array4d correction;              ///< position error n (3), speed
+  Eigen::Quaterniond rotation;            ///< from the nominal attitude to the corrected one
   Eigen::Array<float, 18, 1> covariance;  ///< position, velocity, attitude as Covariance3
 };
 
@@ -62,7 +63,8 @@ NodeOutput node_output(const Node& node, const Smoothed& s, std::size_t k, doubl
   const Eigen::Quaterniond q = geodesy::from_rotation_vector({tilt.x(), tilt.y(), l.mean(level::heading)}) *
                                Eigen::Quaterniond(Eigen::AngleAxisd(heading, Eigen::Vector3d::UnitZ()));
   NodeOutput o;
-  o.correction << l.mean(level::north), l.mean(level::east), v.mean(vertical::position), q.w(), q.x(), q.y(), q.z(),
+  o.rotation = q;
+  o.correction << l.mean(level::north), l.mean(level::east), v.mean(vertical::position),
       speed * (1.0 - scale) * (1.0 - l.mean(level::scale));
 
   Eigen::Matrix3d P = Eigen::Matrix3d::Zero();
@@ -132,20 +134,26 @@ std::vector<std::size_t> spaced(std::span<const Node> nodes, double interval) {
 
 }  // namespace
 
-geodesy::Trajectory corrected_trajectory(Reckoning reckoning, const Smoothed& smoothed, double heading, double scale,
+geodesy::Trajectory corrected_trajectory(const Reckoning& reckoning, const sensors::ImuSeries& imu,
+                                         const Smoothed& smoothed, double heading, double scale,
                                          const LandmarkOptions& options) {
   const auto& nodes = reckoning.nodes;
   const Eigen::Quaterniond q_vb = geodesy::to_quaternion(options.mounting);
   const Eigen::Vector3d lever = q_vb * options.lever_odometer;
   const bool has_lever = options.lever_odometer.squaredNorm() > 0.0;
-  const Eigen::Matrix2d turn = (1.0 - scale) * to_north_east(heading);
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = to_north_east(heading);
   const Eigen::Matrix3d shared = lever_covariance(options);
-  geodesy::Trajectory result;
-  result.origin = "landmark dead reckoning, smoothed";
-  NodeOutput a = node_output(nodes[0], smoothed, 0, heading, scale, node_speed(nodes, 0), shared);
   const std::int64_t spacing = options.output_rate > 0.0 ? Duration::from_seconds(1.0 / options.output_rate).ns : 0;
   std::int64_t next = nodes.front().time.ns;  // when the next point is due
-  std::size_t i = 0, kept = 0;
+
+  geodesy::Trajectory result;
+  result.origin = "landmark dead reckoning, smoothed";
+  const double run = (nodes.back().time - nodes.front().time).seconds();
+  result.samples.reserve(spacing > 0 ? static_cast<std::size_t>(run * options.output_rate) + 2
+                                     : reckoning.samples.size());
+  NodeOutput a = node_output(nodes[0], smoothed, 0, heading, scale, node_speed(nodes, 0), shared);
+  std::size_t i = 0;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const std::size_t base = k == 0 ? 0 : k - 1;
     const NodeOutput b = k == 0 ? a : node_output(nodes[k], smoothed, k, heading, scale, node_speed(nodes, k), shared);
@@ -154,21 +162,25 @@ geodesy::Trajectory corrected_trajectory(Reckoning reckoning, const Smoothed& sm
     const double east =
         1.0 / ((geodesy::wgs84.transverse_radius(from.latitude) + from.height) * std::cos(from.latitude));
     const double per_ns = k == 0 ? 0.0 : 1.0 / static_cast<double>((nodes[k].time - nodes[base].time).ns);
-    const Eigen::Array<double, 8, 1> slope = b.correction - a.correction;
+    const Eigen::Array4d slope = b.correction - a.correction;
     const Eigen::Array<float, 18, 1> covariance_slope = b.covariance - a.covariance;
+    const Eigen::Vector4d q_base = (a.rotation * nodes[base].q_nv).coeffs(),
+                          q_slope = (b.rotation * nodes[base].q_nv).coeffs() - q_base;
+    const Eigen::Matrix3d C = (1.0 - scale) * turn * nodes[base].q_nv.toRotationMatrix();
     for (; i <= nodes[k].sample; ++i) {
-      if (reckoning.points[i].time.ns < next) continue;
-      if (spacing > 0) next += spacing * ((reckoning.points[i].time.ns - next) / spacing + 1);
-      auto& p = reckoning.points[kept++];
-      p = reckoning.points[i];
-      const double u = per_ns * static_cast<double>((p.time - nodes[base].time).ns);
-      const Eigen::Array<double, 8, 1> c = a.correction + u * slope;
-      const Eigen::Vector3d raw = reckoning.moved[i].cast<double>();
-      const Eigen::Vector2d level_move = turn * raw.head<2>();
-      // The node's way (k > 0) counts from the node before; at a node it is the whole step.
-      Eigen::Vector3d at(level_move.x() - c[0], level_move.y() - c[1], (1.0 - scale) * raw.z() - c[2]);
-      const Eigen::Quaterniond q_nv = Eigen::Quaterniond(c[3], c[4], c[5], c[6]) * p.q_nb;
-      p.v_eb_n = c[7] * Eigen::Vector3d(1.0 - 2.0 * (q_nv.y() * q_nv.y() + q_nv.z() * q_nv.z()),
+      const Time time = imu[reckoning.first + i].time;
+      if (time.ns < next) continue;
+      if (spacing > 0) next += spacing * ((time.ns - next) / spacing + 1);
+      const Between& between = reckoning.samples[i];
+      const double u = per_ns * static_cast<double>((time - nodes[base].time).ns);
+      const Eigen::Array4d c = a.correction + u * slope;
+      const Eigen::Vector3d turned = between.turned.cast<double>();
+      const Eigen::Quaterniond relative(std::sqrt(1.0 - turned.squaredNorm()), turned.x(), turned.y(), turned.z());
+      const Eigen::Quaterniond q_nv = Eigen::Quaterniond(Eigen::Vector4d(q_base + u * q_slope)) * relative;
+      Eigen::Vector3d at = C * between.way.cast<double>() - c.head<3>().matrix();
+      auto& p = result.samples.emplace_back();
+      p.time = time;
+      p.v_eb_n = c[3] * Eigen::Vector3d(1.0 - 2.0 * (q_nv.y() * q_nv.y() + q_nv.z() * q_nv.z()),
                                         2.0 * (q_nv.x() * q_nv.y() + q_nv.w() * q_nv.z()),
                                         2.0 * (q_nv.x() * q_nv.z() - q_nv.w() * q_nv.y()));
       if (has_lever) at -= q_nv * lever;
@@ -182,8 +194,6 @@ geodesy::Trajectory corrected_trajectory(Reckoning reckoning, const Smoothed& sm
     }
     a = b;
   }
-  reckoning.points.resize(kept);
-  result.samples = std::move(reckoning.points);
   return result;
 }
 

@@ -75,6 +75,17 @@ Error not_a_number(Time t) {
           .advice = "run the integrity checks on the recording first"};
 }
 
+/// Attitude and way of a node in the n-frame; `correction`: rotation beyond `turned`, rad, v-frame.
+void carry(const Node& before, Node& node, const Eigen::Vector3d& correction, double& latitude) {
+  const Eigen::Matrix3d C_nv = before.q_nv.toRotationMatrix();
+  node.moved = C_nv * node.way;
+  node.moment = (C_nv * node.way_moment).head<2>();
+  node.q_nv = geodesy::from_rotation_vector(-transport(node.moved, latitude)) *
+              (before.q_nv * node.turned * small_rotation(correction));
+  node.q_nv.normalize();
+  latitude += node.moved.x() / geodesy::wgs84.a();
+}
+
 }  // namespace
 
 Expected<Reckoning> reckon(const sensors::ImuSeries& imu, const Series<sensors::OdometerSample>& odometer,
@@ -84,26 +95,28 @@ Expected<Reckoning> reckon(const sensors::ImuSeries& imu, const Series<sensors::
   const Eigen::Matrix3d C_vb = q_vb.toRotationMatrix();
   const Eigen::Vector3d bias_v = C_vb * start.rate_bias;
   double latitude = place.latitude;
-  Eigen::Vector3d earth = earth_rate(latitude);
   const std::size_t n = imu.size();
   const std::int64_t interval = Duration::from_seconds(options.node_interval).ns;
   const std::int64_t nominal = imu.interval.ns > 0 ? imu.interval.ns : (imu[1].time - imu[0].time).ns;
 
-  Reckoning result;
-  result.points.reserve(n - start.sample);
-  result.moved.reserve(n - start.sample);
-  Eigen::Quaterniond q = start.q_nb * q_vb.conjugate();
+  Reckoning result{.first = start.sample};
+  result.samples.reserve(n - start.sample);
+  result.samples.emplace_back();
   DistanceAt distance_at(odometer);
   double s = distance_at(imu[start.sample].time);
-  Eigen::Vector3d f = forward(q), last_dtheta = Eigen::Vector3d::Zero();
-  Node node{.time = imu[start.sample].time, .q_nv = q};
-  result.nodes.push_back(node);
-  result.points.push_back({.time = node.time, .q_nb = q});
-  result.moved.emplace_back(Eigen::Vector3f::Zero());
+  result.nodes.push_back({.time = imu[start.sample].time, .q_nv = start.q_nb * q_vb.conjugate()});
   std::size_t stop = 0;
-  while (stop < stops.size() && stops[stop].ns <= node.time.ns + nominal / 2) ++stop;
-  Time node_start = node.time;
-  Eigen::Vector3d rate_v = bias_v + q.conjugate() * earth;
+  const auto pass_stops = [&](Time t) {
+    while (stop < stops.size() && stops[stop].ns <= t.ns + nominal / 2) ++stop;
+  };
+  pass_stops(result.nodes.front().time);
+  const auto begin = [&](const Node& before) {
+    return Node{.rate = bias_v + before.q_nv.conjugate() * earth_rate(latitude)};
+  };
+  Node node = begin(result.nodes.front());
+  Time node_start = result.nodes.front().time;
+  Eigen::Quaterniond q = Eigen::Quaterniond::Identity();  // in the frame at the node before
+  Eigen::Vector3d f = Eigen::Vector3d::UnitX(), last_dtheta = Eigen::Vector3d::Zero();
 
   for (std::size_t i = start.sample + 1; i < n; ++i) {
     const auto& sample = imu[i];
@@ -113,46 +126,56 @@ Expected<Reckoning> reckon(const sensors::ImuSeries& imu, const Series<sensors::
     Eigen::Vector3d dtheta = C_vb * sample.dtheta;
     if (step > 5 * nominal) {
       if (std::abs(ds) > options.standing_tolerance) return fail(gap_error(imu[i - 1], dt, ds));
-      dtheta = rate_v * dt;  // standing: the attitude holds
+      dtheta = node.rate * dt;  // standing: the attitude holds
+      node.integrated -= dt;
     }
     // Coning (Savage 1998) and the rate of the n-frame as seen from the trolley, both over this sample.
-    const Eigen::Vector3d rotation = dtheta + last_dtheta.cross(dtheta) / 12.0 - rate_v * dt;
+    q = q * small_rotation(dtheta + last_dtheta.cross(dtheta) / 12.0 - node.rate * dt);
     last_dtheta = dtheta;
-    q = q * small_rotation(rotation);
     const Eigen::Vector3d g = forward(q), moved = (0.5 * ds) * (f + g);
     f = g;
     const double tau = 1e-9 * static_cast<double>(sample.time.ns - node_start.ns) - 0.5 * dt;
-    node.moved += moved;
-    node.moment += tau * moved.head<2>();
+    node.way += moved;
+    node.way_moment += tau * moved;
     node.distance += ds;
     node.distance_moment += tau * ds;
-
-    result.points.push_back({.time = sample.time, .q_nb = q});
-    result.moved.emplace_back(node.moved.cast<float>());
+    result.samples.push_back({q.vec().cast<float>(), node.way.cast<float>()});
 
     const bool at_stop = stop < stops.size() && stops[stop].ns <= sample.time.ns + nominal / 2;
     if (!at_stop && sample.time.ns - node_start.ns < interval && i + 1 < n) continue;
     node.time = sample.time;
     node.sample = i - start.sample;
+    node.turned = q;
     node.duration = (sample.time - node_start).seconds();
+    node.integrated += node.duration;
     node.speed = node.distance / node.duration;
-    q = geodesy::from_rotation_vector(-transport(node.moved, latitude)) * q;
-    q.normalize();
-    latitude += node.moved.x() / geodesy::wgs84.a();
-    earth = earth_rate(latitude);
-    node.q_nv = q;
-    if (!node.moved.allFinite() || !q.coeffs().allFinite()) return fail(not_a_number(sample.time));
+    carry(result.nodes.back(), node, Eigen::Vector3d::Zero(), latitude);
+    if (!node.moved.allFinite() || !node.q_nv.coeffs().allFinite()) return fail(not_a_number(sample.time));
     result.nodes.push_back(node);
-    while (stop < stops.size() && stops[stop].ns <= sample.time.ns + nominal / 2) ++stop;
+    pass_stops(sample.time);
     node_start = sample.time;
-    rate_v = bias_v + q.conjugate() * earth;
-    node = Node{};
+    node = begin(result.nodes.back());
+    q.setIdentity();
+    f = Eigen::Vector3d::UnitX();
     if (result.nodes.size() % 4096 == 0) {
       progress.report("dead reckoning", static_cast<double>(i) / static_cast<double>(n));
       if (progress.cancelled()) return fail({.found = "cancelled"});
     }
   }
   return result;
+}
+
+void restart(std::vector<Node>& nodes, const StaticStart& start, const geodesy::Geodetic& place,
+             const LandmarkOptions& options) {
+  const Eigen::Quaterniond q_vb = geodesy::to_quaternion(options.mounting);
+  const Eigen::Vector3d bias_v = q_vb * start.rate_bias;
+  double latitude = place.latitude;
+  nodes.front().q_nv = start.q_nb * q_vb.conjugate();
+  for (std::size_t k = 1; k < nodes.size(); ++k) {
+    const Eigen::Vector3d rate = bias_v + nodes[k - 1].q_nv.conjugate() * earth_rate(latitude);
+    carry(nodes[k - 1], nodes[k], (nodes[k].rate - rate) * nodes[k].integrated, latitude);
+    nodes[k].rate = rate;
+  }
 }
 
 void place_nodes(std::vector<Node>& nodes, double heading, double scale, std::size_t anchor,

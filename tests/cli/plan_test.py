@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 import csv
 import json
-import re
 import time
 import unittest
 import xml.etree.ElementTree
@@ -68,6 +67,11 @@ class Plan(Case):
             done = self.versine("plan", job, "-o", "example", "--monte-carlo", "5")
             self.assertIn(done.returncode, (0, 1), done.stderr)
             self.assertRegex(done.stdout, r"Required 0\.67 mm")
+
+    def test_keys_page_is_what_the_program_says(self):
+        page = SOURCE / "docs" / "job-plan.md"
+        self.assertEqual(page.read_text(), self.good("init", "plan", "--keys"),
+                         "run: versine init plan --keys > docs/job-plan.md")
 
     def test_bad_input(self):
         self.refused("plan", "job.toml", "--set", 'sensors.grade="rlg-jiangg"', says=["sensors.grade", "rlg-jiang"])

@@ -5,12 +5,13 @@
 
 namespace versine::fusion::landmark {
 
-/// From smoothed errors at the nodes to the trajectory of the IMU at every sample: corrections and covariances are
-/// interpolated between nodes, the nominal path in between is kept sample by sample. Takes the points of `reckoning`.
+/// From smoothed errors at the nodes to the trajectory of the IMU at every sample, or at the options' output rate:
+/// corrections and covariances are interpolated between nodes, the nominal path in between is kept sample by sample.
 /// Attitude is that of the trolley's direction of travel seen through the mounting: equivalent pitch and heading of
 /// Jiang eq. 14. Velocity is that of the odometer's point.
-[[nodiscard]] geodesy::Trajectory corrected_trajectory(Reckoning reckoning, const Smoothed& smoothed, double heading,
-                                                       double scale, const LandmarkOptions& options);
+[[nodiscard]] geodesy::Trajectory corrected_trajectory(const Reckoning& reckoning, const sensors::ImuSeries& imu,
+                                                       const Smoothed& smoothed, double heading, double scale,
+                                                       const LandmarkOptions& options);
 
 /// The joint distribution of errors of the odometer's point (without what level and mounting do to the landmark's lever
 /// arm, which shifts the whole run and no versine) every `interval` seconds: position, attitude, odometer scale,
