@@ -15,13 +15,13 @@ std::string list(const Eigen::Vector3d& v) {
   return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x(), v.y(), v.z());
 }
 
-/// What a counter on a trolley's wheel is worth: its resolution, its slips, and 0.1 mm/sqrt(m) for uneven rolling.
+/// What a counter on a trolley's wheel is worth: its resolution, its slips, and 0.03 mm/sqrt(m) for uneven rails.
 std::string wheel_noise(const simulation::OdometerModel& o) {
   const double resolution = std::max(o.quantum, 0.2e-3) / std::sqrt(12.0);
   const double slips = o.slip_distance * std::sqrt(2.0 * o.slip_per_km / 1000.0);
   return fmt::format(
       "sigma_m = {:.3g}\nrandom_walk_mpsqrtm = {:.3g}\nscale_sigma = {:.3g}\nscale_walk_psqrts = {:.3g}\n", resolution,
-      std::hypot(1e-4, slips), std::max(2.0 * o.scale, 1e-4), std::max(o.scale_walk, 1e-6));
+      std::hypot(3e-5, slips), std::max(2.0 * o.scale, 1e-4), std::max(o.scale_walk, 1e-6));
 }
 }  // namespace
 
