@@ -119,6 +119,13 @@ Outcome<batch::Job> batch_job(const fs::path& job) {
   const auto path = fs::absolute(job);
   const auto config = read_job(*text, path);
   if (!config) return failure(Exit::usage, config.error());
+  if (!config->monitoring.empty()) {
+    return failure(Exit::usage, {.file = job.string(),
+                                 .field = "monitoring",
+                                 .found = "files of single vehicles",
+                                 .expected = "a job without them",
+                                 .advice = "stamp monitoring files with 'versine georef', one vehicle a job"});
+  }
   const auto map = load_map(*config);
   if (!map) return failure(Exit::usage, map.error());
   const auto digest = config_digest(*config);

@@ -131,7 +131,12 @@ Expected<GeorefSummary> run_georef(const GeorefConfig& config, const std::filesy
     }
     for (auto& r : *recordings) {
       const std::string name = r.name;
+      georef::Recording again;
+      if (config.run_online) again = r;
       summary.outcomes.push_back({name, georef::georeference(**map, std::move(r), config.options, config.constraints)});
+      if (const auto& result = summary.outcomes.back().result; result && config.run_online) {
+        summary.online.push_back(replay_online(**map, std::move(again), *result, config.options, config.online));
+      }
     }
   }
   summary.seconds_solve = since(begin);
@@ -158,6 +163,8 @@ Expected<GeorefSummary> run_georef(const GeorefConfig& config, const std::filesy
   auto done = write_georef_csv(fresh, **map, summary.outcomes, config.csv_interval);
   if (done) done = io::write_georef_hdf5(fresh / "georef.h5", **map, results);
   if (done) done = io::write_georef_gpkg(fresh / "result.gpkg", **map, results, config.csv_interval);
+  if (done && config.run_online) done = write_online_csv(fresh, **map, summary.online);
+  if (done) done = stamp_monitoring(fresh, **map, summary.outcomes, config.monitoring, progress);
   if (!done) {
     std::filesystem::remove_all(fresh, code);
     return tl::unexpected(done.error());

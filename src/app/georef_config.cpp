@@ -4,6 +4,25 @@
 
 namespace versine::app {
 
+namespace {
+void describe_monitoring(ConfigVisitor& t, MonitoringConfig& m) {
+  t.value("file", m.file,
+          {.doc = "HDF5 or CSV; read block by block, never changed", .required = true, .example = "\"axlebox.h5\""});
+  t.value("channels", m.channels, {.doc = "Datasets or columns", .required = true, .example = "[\"axlebox/left\"]"});
+  t.value("times", m.times, {.doc = "Dataset (s, or integer ns) or column (s) of times; or rate_hz and start_s"});
+  t.value("rate_hz", m.rate_hz, {.doc = "Sampling rate", .unit = "1/s", .positive = true});
+  t.value("start_s", m.start, {.doc = "Time of the first sample, with rate_hz", .unit = "s"});
+  t.value("offset_s", m.offset, {.doc = "Added to every time: the recording's clock minus this file's", .unit = "s"});
+  t.value("scale", m.scale, {.doc = "The channels' numbers times this"});
+  t.value("recording", m.recording, {.doc = "Of which recording of the job, counted from 1", .min = 1});
+  t.value("bin_m", m.options.bin, {.doc = "Length over which RMS and peak are taken", .unit = "m", .positive = true});
+  t.value("slowest_mps", m.options.slowest,
+          {.doc = "Slower samples are left out of RMS and peak", .unit = "m/s", .min = 0.0});
+  t.value("position_rate_hz", m.options.position_rate,
+          {.doc = "Exact positions as often; 0: none", .unit = "1/s", .min = 0.0});
+}
+}  // namespace
+
 void describe(ConfigVisitor& v, GeorefConfig& c) {
   v.table("network", "The railway map", [&](ConfigVisitor& t) {
     t.value("file", c.network,
@@ -83,6 +102,15 @@ void describe(ConfigVisitor& v, GeorefConfig& c) {
         t.value("tracks", k.tracks, {.doc = "The vehicle was on one of these tracks", .required = true});
         t.value("excluded", k.excluded, {.doc = "It was on none of them"});
       });
+  v.tables<MonitoringConfig>("monitoring", "Monitoring channels to be put on the track", c.monitoring,
+                             describe_monitoring);
+  v.table("online", "Replay through the online filter (versine georef --online)", [&](ConfigVisitor& t) {
+    t.value("decide", c.online.decide,
+            {.doc = "Probability from which a leg of a switch is decided", .min = 0.5, .max = 0.999999});
+    int most = static_cast<int>(c.online.hypotheses);
+    t.value("hypotheses", most, {.doc = "Kept at most", .min = 2, .max = 1000});
+    c.online.hypotheses = static_cast<std::size_t>(most);
+  });
   v.table("output", "Results", [&](ConfigVisitor& t) {
     t.value("csv_interval_s", c.csv_interval,
             {.doc = "Between rows of positions.csv and points of the GeoPackage; the HDF5 file has every grid step",

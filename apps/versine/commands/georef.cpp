@@ -11,8 +11,9 @@ namespace versine::cli {
 
 namespace {
 
-int run(const JobOptions& options) {
+int run(const JobOptions& options, bool online) {
   app::GeorefConfig config;
+  config.run_online = online;
   const auto read = app::read_config(
       options.job, [&](app::ConfigVisitor& v) { app::describe(v, config); }, options.set);
   if (!read) return report(read.error());
@@ -38,6 +39,7 @@ int run(const JobOptions& options) {
         "%zu recordings, %zu journeys, %zu failed; map %.2f s, journeys %.2f s, writing %.2f s; results in %s\n",
         summary->outcomes.size(), journeys, failed, summary->seconds_map, summary->seconds_solve,
         summary->seconds_write, folder.c_str());
+    for (const auto& replay : summary->online) std::printf("%s", app::online_text(replay).c_str());
   }
   return failed == 0 && summary->faults.empty() ? good : unacceptable;
 }
@@ -48,7 +50,9 @@ void add_georef(CLI::App& app, int& exit) {
   auto* command = app.add_subcommand("georef", "Put an in-service vehicle's recordings on the tracks of a map");
   const auto options = std::make_shared<JobOptions>();
   add_job_options(*command, *options);
-  command->callback([options, &exit] { exit = run(*options); });
+  const auto online = std::make_shared<bool>(false);
+  command->add_flag("--online", *online, "Also replay the recordings sample by sample: latency, difference to offline");
+  command->callback([options, online, &exit] { exit = run(*options, *online); });
 }
 
 }  // namespace versine::cli

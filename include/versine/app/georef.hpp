@@ -2,16 +2,30 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "versine/app/config.hpp"
+#include "versine/app/georef_online.hpp"
 #include "versine/core/progress.hpp"
 #include "versine/georef/georeference.hpp"
+#include "versine/georef/monitoring.hpp"
 #include "versine/io/network_file.hpp"
 #include "versine/network/build.hpp"
 
 namespace versine::app {
+
+/// `[[monitoring]]`: channels to be put on the track.
+struct MonitoringConfig {
+  InputPath file;
+  std::vector<std::string> channels;
+  std::string times;
+  std::optional<double> rate_hz;
+  double start = 0.0, offset = 0.0, scale = 1.0;
+  int recording = 1;  ///< whose journeys the vehicle made, counted from 1
+  georef::MonitoringOptions options;
+};
 
 struct GeorefConfig {
   InputPath network;
@@ -21,6 +35,9 @@ struct GeorefConfig {
   std::vector<InputPath> recordings;
   georef::Options options;
   std::vector<georef::Constraint> constraints;
+  std::vector<MonitoringConfig> monitoring;
+  bool run_online = false;  ///< `--online`: replay the recordings through the online filter too
+  georef::OnlineOptions online;
   double csv_interval = 1.0;  ///< s between rows of positions.csv and points of the GeoPackage
 };
 void describe(ConfigVisitor& v, GeorefConfig& c);
@@ -40,6 +57,7 @@ struct GeorefOutcome {
 
 struct GeorefSummary {
   std::vector<GeorefOutcome> outcomes;
+  std::vector<OnlineReplay> online;  ///< with --online
   std::vector<Error> faults;
   double seconds_map = 0.0, seconds_solve = 0.0, seconds_write = 0.0;
 };
@@ -47,6 +65,11 @@ struct GeorefSummary {
 /// appears whole or not at all. A recording that fails is reported and the rest is processed; fails when all do.
 [[nodiscard]] Expected<GeorefSummary> run_georef(const GeorefConfig& config, const std::filesystem::path& folder,
                                                  Progress& progress);
+
+/// monitoring_N.h5 in `folder` for each monitoring file of the job; reads them block by block.
+[[nodiscard]] Expected<void> stamp_monitoring(const std::filesystem::path& folder, const georef::Map& map,
+                                              const std::vector<GeorefOutcome>& outcomes,
+                                              const std::vector<MonitoringConfig>& files, Progress& progress);
 
 /// positions.csv, paths.csv, switches.csv, residuals.csv. Layout: docs/formats-georef.md.
 [[nodiscard]] Expected<void> write_georef_csv(const std::filesystem::path& folder, const georef::Map& map,

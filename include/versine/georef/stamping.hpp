@@ -36,6 +36,8 @@ class PositionCursor {
   [[nodiscard]] std::optional<OnJourney> on_journey(Time time);
   /// The whole position; nothing outside the journeys.
   [[nodiscard]] std::optional<Position> at(Time time);
+  /// Of the last time that was found.
+  [[nodiscard]] std::size_t journey() const { return journey_; }
   /// A place on a journey's best path.
   [[nodiscard]] Position place(const OnJourney& j);
 
