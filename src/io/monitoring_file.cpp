@@ -31,7 +31,7 @@ Expected<MonitoringReader> MonitoringReader::open(const MonitoringFile& file) {
                  .field = std::move(field),
                  .found = std::move(found),
                  .expected = std::move(expected),
-                 .advice = "see 'monitoring' in docs/georeferencing.md"});
+                 .advice = "see docs/monitoring.md"});
   };
   if (file.channels.empty()) return bad("channels", "none", "the names of datasets or columns");
   if (file.times.empty() == !file.rate_hz) {

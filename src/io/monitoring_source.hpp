@@ -24,7 +24,7 @@ class MonitoringReader::Source {
             .field = std::move(field),
             .found = std::move(found),
             .expected = std::move(expected),
-            .advice = "'versine init georef --keys' tells what [[monitoring]] needs"};
+            .advice = "see docs/monitoring.md"};
   }
   MonitoringFile file_;
 };
