@@ -9,6 +9,7 @@
 
 #include "versine/app/progress_file.hpp"
 #include "versine/app/version.hpp"
+#include "versine/app/view_georef.hpp"
 #include "versine/app/view_survey.hpp"
 #include "versine/io/input_stream.hpp"
 
@@ -156,10 +157,11 @@ Expected<ViewContent> open_view(const fs::path& given, const std::optional<fs::p
   }
   const std::string command = run.value("command", "");
   if (command == "survey" || command == "geometry") return open_survey_view(folder, *text, compare);
+  if (command == "georef") return open_georef_view(folder, *text, compare);
   return fail({.file = (folder / "run.json").string(),
                .field = "command",
                .found = fmt::format("a result of 'versine {}'", command),
-               .expected = "one of survey or geometry",
+               .expected = "one of survey, geometry or georef",
                .advice = "its own files show it; 'versine report' makes a page of it where it can"});
 }
 
@@ -177,6 +179,14 @@ Expected<ViewContent> follow_view(const fs::path& folder, const std::optional<fs
                           std::size_t buckets) -> std::optional<std::string> {
     const auto now = follower->content();
     return now && now->series ? now->series(id, from, to, buckets) : std::nullopt;
+  };
+  out.map = [follower](const std::string& part) -> std::optional<std::string> {
+    const auto now = follower->content();
+    return now && now->map ? now->map(part) : std::nullopt;
+  };
+  out.constraints_json = [follower] {
+    const auto now = follower->content();
+    return now && now->constraints_json ? now->constraints_json() : std::string("[]");
   };
   out.report = [follower]() -> std::optional<std::string> {
     const auto now = follower->content();

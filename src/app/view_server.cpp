@@ -121,6 +121,11 @@ struct ViewServer::Impl {
           if (!body) return refuse(response, 404, "no such series in this result");
           response.set_content(*body, "application/octet-stream");
         });
+    server.Get(R"(/api/map/([A-Za-z0-9.]+))", [this](const httplib::Request& request, httplib::Response& response) {
+      const auto body = content.map ? content.map(request.matches[1].str()) : std::nullopt;
+      if (!body) return refuse(response, 404, "no such part of a map in this result");
+      response.set_content(*body, "application/octet-stream");
+    });
     // The report needs the token, too; a link cannot send a header, so the page fetches it and opens it as a blob.
     server.Get("/api/report", [this](const httplib::Request&, httplib::Response& response) {
       const auto text = content.report ? content.report() : std::nullopt;

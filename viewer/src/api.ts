@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import type { Progress, Result, Series, Values } from './contract';
+import type { Constraint, Points, Progress, Result, Series, Values } from './contract';
 
 // The token comes in the URL's fragment, which no server log and no referrer ever sees; it is kept for reloads of this
 // tab and taken out of the address bar.
@@ -67,13 +67,21 @@ export async function putMarks(marks: unknown[]): Promise<void> {
   await request('api/marks', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(marks) });
 }
 
+/** float64 origin, uint32 groups, uint32 points, uint32 start[groups + 1], float32 places. */
+export async function getMap(part: string): Promise<Points> {
+  const buffer = await (await request(`api/map/${part}`)).arrayBuffer();
+  const [easting, northing] = new Float64Array(buffer, 0, 2);
+  const [groups, points] = new Uint32Array(buffer, 16, 2);
+  return { origin: [easting, northing], start: new Uint32Array(buffer, 24, groups + 1), places: new Float32Array(buffer, 28 + 4 * groups, 2 * points) };
+}
+
+export async function getConstraints(): Promise<Constraint[]> {
+  return (await request('api/constraints')).json();
+}
+
 /** Writes the reviewer's constraints beside the result; the result itself is never changed. */
-export async function putConstraints(body: unknown): Promise<void> {
-  await request('api/constraints', {
-    method: 'POST',
-    headers: { 'Content-Type': 'application/json' },
-    body: JSON.stringify(body),
-  });
+export async function putConstraints(list: Constraint[]): Promise<void> {
+  await request('api/constraints', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify(list) });
 }
 
 /** Opens the report in a tab of its own. A link could not send the token, so the page fetches it. */

@@ -140,35 +140,72 @@ export interface PackUpItem {
 }
 
 export interface Georef {
+  network: { tracks: number; names: string[]; bounds: [number, number, number, number]; warnings: string[] };
   journeys: Journey[];
-  bounds: [number, number, number, number]; // easting, northing of the network
+  failures: { recording: string; error: string }[];
+  strips: StripInfo[]; // of every journey; the series are `${journey.id}:t:${strip.id}` over time, `:d:` over distance
+  constraintsFile: string;
 }
 
 export interface Journey {
-  id: string;
-  title: string;
-  from: number; // s
+  id: string; // "1.2": recording and journey, from 1
+  recording: string;
+  number: number;
+  from: number; // s of the recording's clock
   to: number;
   length: number; // m
-  hypotheses: Hypothesis[];
+  count: number; // of positions
+  fixes: number;
+  rejected: number;
+  entropy: number; // nat
+  hypotheses: Hypothesis[]; // the most probable first
   stretches: Stretch[]; // ambiguous ones, least certain first
 }
 
 export interface Hypothesis {
-  id: number; // 1 is the best
+  path: number; // 1 is the most probable
   probability: number;
   logLikelihood: number;
-  tracks: string[];
+  evidence: Evidence;
+  from: number; // m on the path
+  to: number;
+  tracks: { id: string; line: string; from: number; to: number }[]; // m on the path
+  x: number[]; // m on the path, of each vertex
   easting: number[];
   northing: number[];
 }
 
+/** Parts of a log-likelihood, or of a difference of two. */
+export type Evidence = Partial<Record<'position' | 'speed' | 'turn_rate' | 'route', number>>;
+
+/** Where a plausible path leaves the most probable one. */
 export interface Stretch {
-  from: number; // s
+  from: number; // s of the recording's clock
   to: number;
-  alternatives: { hypothesis: number; probability: number }[];
-  gap: number; // difference of log-likelihoods to the runner-up
-  evidence: string;
+  fromM: number; // m on path 1
+  toM: number;
+  taken: string[]; // tracks of path 1
+  alternative: string[];
+  paths: number[]; // that take the alternative
+  probability: number; // of the alternative
+  evidence: Evidence; // for path 1
+}
+
+/** What a reviewer decided: docs/formats-georef.md. */
+export interface Constraint {
+  recording?: string;
+  from_s: number;
+  to_s: number;
+  tracks: string[];
+  excluded?: boolean;
+  comment?: string;
+}
+
+/** GET /api/map/{part}: groups of points. */
+export interface Points {
+  origin: [number, number];
+  start: Uint32Array; // of each group, and the end
+  places: Float32Array; // easting, northing from the origin
 }
 
 /** GET /api/series/{id}?from&to&buckets: samples where few enough lie there (min and max are then the same array), else

@@ -3,6 +3,7 @@ import 'uplot/dist/uPlot.min.css';
 import './style.css';
 import { getProgress, getResult, ServerError } from './api';
 import type { Result } from './contract';
+import { GeorefScreen } from './georef';
 import type { Screen } from './screen';
 import { SurveyScreen } from './survey';
 import { initTheme } from './theme';
@@ -14,6 +15,7 @@ const root = document.getElementById('app')!;
 /** A screen a kind of result. */
 const screens: Partial<Record<Result['kind'], (result: Result) => Screen>> = {
   survey: (result) => new SurveyScreen(root, result),
+  georef: (result) => new GeorefScreen(root, result),
   waiting: (result) => new WaitingScreen(root, result),
 };
 

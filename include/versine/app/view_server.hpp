@@ -20,10 +20,13 @@ struct ViewContent {
   std::function<std::string(double x)> values_json;
   /// Binary body of /api/series/{id}; nothing when there is no such series. `buckets` 0: every sample.
   std::function<std::optional<std::string>(const std::string& id, double from, double to, std::size_t buckets)> series;
+  /// Binary body of /api/map/{part}: the lines and points of a plan; nothing when there is no such part.
+  std::function<std::optional<std::string>(const std::string& part)> map;
   /// report.html of the result, where there is one.
   std::function<std::optional<std::string>()> report;
   /// Takes the reviewer's constraints; the error goes back to the page. Empty: there is nothing to review.
   std::function<Expected<void>(const std::string& json)> put_constraints;
+  std::function<std::string()> constraints_json;  ///< what was decided before
   /// Places that a person marked: a JSON array, kept beside the result.
   std::function<std::string()> marks_json;
   std::function<Expected<void>(const std::string& json)> put_marks;
