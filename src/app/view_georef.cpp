@@ -109,6 +109,21 @@ Error unusable(const fs::path& file, std::string found) {
           .advice = "run versine georef again with this version, or open the result with the version that wrote it"};
 }
 
+std::string id_of(std::size_t recording, const json& journey) {
+  return fmt::format("{}.{}", recording, journey.at("journey").get<int>());
+}
+
+/// When each journey begins.
+std::map<std::string, double> begins(const json& recordings) {
+  std::map<std::string, double> out;
+  std::size_t number = 0;
+  for (const json& r : recordings) {
+    ++number;
+    for (const json& j : r.value("journeys", json::array())) out[id_of(number, j)] = j.at("from_s").get<double>();
+  }
+  return out;
+}
+
 Expected<std::shared_ptr<GeorefView>> open(const fs::path& folder, const std::string& run_json) {
   const fs::path index_file = folder / "georef.json";
   const auto index_text = io::read_text(index_file);
@@ -126,7 +141,7 @@ Expected<std::shared_ptr<GeorefView>> open(const fs::path& folder, const std::st
   auto map = read_view_network(folder / network.value("geojson", "network.geojson"), *projection);
   if (!map) return tl::unexpected(map.error());
   view->network = std::move(*map);
-  auto series = read_journey_series(folder, *projection);
+  auto series = read_journey_series(folder, *projection, begins(index.at("recordings")));
   if (!series) return tl::unexpected(series.error());
   view->journeys = std::move(*series);
 
@@ -137,7 +152,7 @@ Expected<std::shared_ptr<GeorefView>> open(const fs::path& folder, const std::st
     const std::string name = r.value("name", fmt::format("recording {}", number));
     if (r.contains("error")) failures.push_back({{"recording", name}, {"error", r["error"]}});
     for (const json& j : r.value("journeys", json::array())) {
-      const std::string id = fmt::format("{}.{}", number, j.at("journey").get<int>());
+      const std::string id = id_of(number, j);
       const auto found = view->journeys.find(id);
       const std::size_t count = found == view->journeys.end() ? 0 : found->second.size();
       journeys.push_back(journey(j, id, name, count, *projection));

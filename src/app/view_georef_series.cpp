@@ -48,6 +48,7 @@ std::string key_of(const std::vector<std::string>& row, std::optional<std::size_
 }
 
 Expected<std::map<std::string, Rows>> read(const fs::path& path, std::span<const Wanted> wanted,
+                                           const std::map<std::string, double>& begin,
                                            const geodesy::Projection* projection) {
   const auto text = TextTable::read(path);
   if (!text) return tl::unexpected(text.error());
@@ -62,8 +63,11 @@ Expected<std::map<std::string, Rows>> read(const fs::path& path, std::span<const
   }
   std::map<std::string, Rows> out;
   for (const auto& row : text->rows) {
-    Rows& rows = out[key_of(row, recording, journey)];
-    rows.table.time.push_back(TextTable::number(row, time));
+    const std::string key = key_of(row, recording, journey);
+    const auto start = begin.find(key);
+    if (start == begin.end()) continue;
+    Rows& rows = out[key];
+    rows.table.time.push_back(TextTable::number(row, time) - start->second);
     rows.table.distance.push_back(TextTable::number(row, distance));
     for (const Wanted& w : wanted) {
       auto& column = rows.table.columns[w.name];
@@ -123,10 +127,11 @@ std::optional<std::string> JourneySeries::encode(const std::string& id, double f
 }
 
 Expected<std::map<std::string, JourneySeries>> read_journey_series(const fs::path& folder,
-                                                                   const geodesy::Projection& projection) {
-  auto positions = read(folder / "positions.csv", of_positions, nullptr);
+                                                                   const geodesy::Projection& projection,
+                                                                   const std::map<std::string, double>& begin) {
+  auto positions = read(folder / "positions.csv", of_positions, begin, nullptr);
   if (!positions) return tl::unexpected(positions.error());
-  auto fixes = read(folder / "fixes.csv", of_fixes, &projection);
+  auto fixes = read(folder / "fixes.csv", of_fixes, begin, &projection);
   if (!fixes) return tl::unexpected(fixes.error());
   std::map<std::string, JourneySeries> out;
   for (auto& [id, rows] : *positions) {

@@ -19,7 +19,7 @@ class JourneySeries {
   struct Column {
     std::vector<double> value, sigma;
   };
-  /// Times are s of the recording's clock, distances m on path 1; both increase or stay.
+  /// Times are s since the journey began, distances m on path 1; both increase or stay.
   struct Table {
     std::vector<double> time, distance;
     std::map<std::string, Column> columns;
@@ -39,9 +39,11 @@ class JourneySeries {
   std::string fixes_;
 };
 
-/// By "recording.journey", counted from 1.
-[[nodiscard]] Expected<std::map<std::string, JourneySeries>> read_journey_series(const std::filesystem::path& folder,
-                                                                                 const geodesy::Projection& projection);
+/// By "recording.journey", counted from 1. `begin` tells when each journey begins, s of the recording's clock; its
+/// series count from there.
+[[nodiscard]] Expected<std::map<std::string, JourneySeries>> read_journey_series(
+    const std::filesystem::path& folder, const geodesy::Projection& projection,
+    const std::map<std::string, double>& begin);
 /// The strips of every journey, in the order in which they are shown.
 [[nodiscard]] nlohmann::ordered_json georef_strips();
 

@@ -133,6 +133,9 @@ struct ViewServer::Impl {
       response.set_header("Content-Security-Policy", report_policy);
       response.set_content(*text, "text/html; charset=utf-8");
     });
+    server.Get("/api/constraints", [this](const httplib::Request&, httplib::Response& response) {
+      response.set_content(content.constraints_json ? content.constraints_json() : "[]", "application/json");
+    });
     server.Get("/api/marks", [this](const httplib::Request&, httplib::Response& response) {
       response.set_content(content.marks_json ? content.marks_json() : "[]", "application/json");
     });

@@ -1,16 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-
-/** Index of the first distance that is not less. */
-function lowerBound(x: readonly number[], value: number): number {
-  let low = 0;
-  let high = x.length;
-  while (low < high) {
-    const middle = (low + high) >> 1;
-    if (x[middle] < value) low = middle + 1;
-    else high = middle;
-  }
-  return low;
-}
+import { lowerBound } from './pyramid';
 
 export type Place = [number, number];
 
