@@ -295,9 +295,12 @@ Expected<Solved> solve(simulation::Scenario s, std::uint64_t seed, double mounti
   a.mounting_sigma = std::max(mounting, 0.02e-3);
   a.wheel_lever.l_b = o.lever_odometer;
   a.landmark_lever.l_b = o.lever_landmark;
-  a.constraint_sigma = 0.1 * mm;  // m/s; rollers on rails
-  a.constraint_angle = 1e-4;
-  a.zero_velocity_sigma = 0.3 * mm;
+  // Rollers on rails: what is left of the irregularity over metres, as in the job of a simulated recording.
+  const double rough = s.track.spectrum_factor < 0.01 ? 1.0 : 10.0;
+  a.constraint_sigma = 2e-5 * rough;
+  a.constraint_angle = 1e-5 * rough;
+  a.constraint_peak = 2e-4 * rough;
+  a.zero_velocity_sigma = 3e-5;
   a.odometer_sigma = 0.1 * mm;
   a.odometer_random_walk = 0.05 * mm;
   a.odometer_scale_sigma = 1e-3;

@@ -90,6 +90,11 @@ Expected<fusion::AidedInsResult> solve_by_landmarks(const fusion::AidedInsInput&
   if (!solved) return tl::unexpected(solved.error());
   fusion::AidedInsResult result;
   result.solution = std::move(solved->solution);
+  if (!input.gnss.empty() || !input.speed.empty() || !input.heading.empty()) {
+    result.solution.record.warnings.push_back(
+        "GNSS, speed and heading of this job are not used: method = \"landmark\" works with gyros, odometer and "
+        "landmarks. The aided INS uses them all.");
+  }
   return result;
 }
 
