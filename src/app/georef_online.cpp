@@ -39,25 +39,30 @@ void feed(const georef::Map& map, const georef::Recording& r, const georef::Opti
 void compare(const georef::Map& map, const georef::RecordingResult& offline, OnlineReplay& out) {
   georef::PositionCursor cursor(map, offline);
   double square = 0.0;
-  std::size_t same = 0, inside = 0;
+  std::size_t same = 0, on_track = 0, inside = 0;
   std::vector<double> distances;
   for (const auto& p : out.positions) {
     const auto q = cursor.at(p.time);
     if (!q) continue;
+    const bool agree = p.track == q->track;
+    on_track += agree ? 1 : 0;
+    inside += agree && std::abs(p.track_distance - q->track_distance) <= 1.96 * p.sigma ? 1 : 0;
+    if (!(p.sigma < OnlineReplay::sure)) {
+      ++out.unsure;
+      continue;
+    }
     const double d = (p.point - q->point).norm();
     distances.push_back(d);
     square += d * d;
-    if (p.track != q->track) continue;
-    ++same;
-    inside += std::abs(p.track_distance - q->track_distance) <= 1.96 * p.sigma ? 1 : 0;
+    same += agree ? 1 : 0;
   }
   out.compared = distances.size();
+  if (on_track > 0) out.coverage = static_cast<double>(inside) / static_cast<double>(on_track);
   if (distances.empty()) return;
   const auto n = static_cast<double>(distances.size());
   out.same_track = static_cast<double>(same) / n;
   out.rms = std::sqrt(square / n);
   out.p95 = quantile(distances, 0.95);
-  out.coverage = same == 0 ? 0.0 : static_cast<double>(inside) / static_cast<double>(same);
 }
 
 /// Whether the offline path of the time takes this leg.
@@ -145,11 +150,15 @@ Expected<void> write_online_csv(const std::filesystem::path& folder, const geore
 
 std::string online_text(const OnlineReplay& r) {
   return fmt::format(
-      "{}: {} positions online, {:.2f} % on the offline path's track, RMS {:.2f} m and 95 % within {:.2f} m of it, "
-      "within 1.96 sigma {:.1f} %\n  {} legs decided after {:.1f} s, {:.0f} m (median; at worst {:.1f} s, {:.0f} m), "
-      "{} against the offline path, {} revised, {} restarts; {:.2f} s of processor time\n",
-      r.name, r.positions.size(), 100.0 * r.same_track, r.rms, r.p95, 100.0 * r.coverage, r.legs, r.median_seconds,
-      r.median_metres, r.worst_seconds, r.worst_metres, r.wrong, r.revised, r.restarts, r.seconds_cpu);
+      "{}: {} positions online, {} of them with a sigma below {:.0f} m: {:.2f} % of these on the offline path's track, "
+      "RMS {:.2f} m and 95 % within {:.2f} m of it; of all {:.1f} % within 1.96 sigma\n  {} legs decided after {:.1f} "
+      "s, "
+      "{:.0f} m (median; at worst {:.1f} s, {:.0f} m), {} against the offline path, {} revised, {} restarts; {:.3f} s "
+      "of "
+      "processor time\n",
+      r.name, r.positions.size(), r.compared, OnlineReplay::sure, 100.0 * r.same_track, r.rms, r.p95,
+      100.0 * r.coverage, r.legs, r.median_seconds, r.median_metres, r.worst_seconds, r.worst_metres, r.wrong,
+      r.revised, r.restarts, r.seconds_cpu);
 }
 
 }  // namespace versine::app

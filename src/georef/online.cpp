@@ -27,6 +27,10 @@ std::size_t OnlineGeoreferencer::restarts() const {
   return bank_->restarts;
 }
 
+namespace {
+constexpr double stray_sigma = 300.0;  // m
+}
+
 OnlineGeoreferencer::Bank::Bank(const Map& map, const Options& options, const OnlineOptions& online)
     : map_(map), options_(options), online_(online), inertial_(options.forward_axis) {
   for (Epochs* model : {&with_imu_, &without_imu_}) {
@@ -135,7 +139,13 @@ void OnlineGeoreferencer::Bank::step(const Seen& s) {
   const auto moved = inertial_.at_fix(s.time, s.speed, s.standing);
   Epoch e;
   if (moved.usable) e.input = moved.input;
-  if (s.usable) e.position = s.point, e.sigma = s.sigma;
+  if (s.usable) {
+    e.position = s.point, e.sigma = s.sigma;
+  } else if (alive_.front().state.P(0, 0) > 4.0 * stray_sigma * stray_sigma) {
+    // A receiver's dead reckoning in a tunnel is hundreds of metres off, all to one side: it only keeps the distance
+    // from running away.
+    e.position = s.point, e.sigma = std::max(stray_sigma, s.sigma);
+  }
   if (s.receiver_speed) e.speed = s.receiver_speed, e.sigma_speed = s.sigma_speed;
   e.standing = s.standing;
   e.turn = moved.turn, e.turn_seconds = moved.turn_seconds;

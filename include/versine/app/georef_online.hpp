@@ -17,11 +17,12 @@ struct OnlineReplay {
   // Decisions at facing switches: seconds and metres from entering the leg until it was decided.
   std::size_t legs = 0, revised = 0, wrong = 0;  ///< wrong: the offline path does not take it
   double median_seconds = 0, worst_seconds = 0, median_metres = 0, worst_metres = 0;
-  // Against the offline positions at the same times.
-  std::size_t compared = 0;
+  // Against the offline positions at the same times, where the online sigma is below `sure` (not in a tunnel).
+  static constexpr double sure = 5.0;  ///< m
+  std::size_t compared = 0, unsure = 0;
   double same_track = 0;    ///< share of positions on the offline path's track
   double rms = 0, p95 = 0;  ///< distance on the map, m
-  double coverage = 0;      ///< share within 1.96 sigma of the difference along the track, where the track is right
+  double coverage = 0;      ///< of all on the same track: share within 1.96 sigma of the offline place
   double seconds_cpu = 0;   ///< processor time of the whole replay
 };
 
