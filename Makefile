@@ -4,7 +4,7 @@ JOBS ?= $(shell nproc)
 BUILD := build/release
 VERSINE := $(BUILD)/apps/versine/versine
 
-.PHONY: all setup build test demo accuracy figures benchmarks format clean
+.PHONY: all setup build test demo screenshots accuracy figures benchmarks format clean
 all: build
 
 setup:
@@ -19,13 +19,26 @@ build: setup $(BUILD)/build.ninja
 test: build
 	ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
 
+# Limits of the demo's survey and of the 10 km line.
+LIMITS := --set geometry.quality.limits=$(CURDIR)/data/limits
+DEMO_LIMITS := $(LIMITS)/china-ballastless.toml --set geometry.quality.speed_kmh=300 --set geometry.adjustment.on=true
+LINE_LIMITS := $(LIMITS)/en13848-5.toml --set geometry.quality.speed_kmh=120 --set geometry.adjustment.on=true
+
 # A survey of 1 km of slab track with a total station: simulated, processed, compared with the truth.
 demo: build
 	rm -rf out/demo && mkdir -p out
 	$(VERSINE) simulate examples/scenarios/slab-1km.toml -o out/demo/recording
-	$(VERSINE) survey out/demo/recording/survey.toml -o out/demo/result
+	$(VERSINE) survey out/demo/recording/survey.toml -o out/demo/result $(DEMO_LIMITS)
 	$(VERSINE) compare out/demo/result out/demo/recording/truth_trajectory.csv
-	@echo; echo "The result is in out/demo/result: trajectory.h5, trajectory.csv, run.json."
+	@echo; echo "The result is in out/demo/result. Look at it: $(VERSINE) view out/demo/result"
+
+# Pictures of docs/viewer.md: the demo and 10 km of line with faults, in a real browser.
+screenshots: demo
+	rm -rf out/line && $(VERSINE) simulate examples/scenarios/line-10km.toml -o out/line/recording
+	$(VERSINE) survey out/line/recording/survey.toml -o out/line/result $(LINE_LIMITS)
+	mkdir -p docs/images
+	VERSINE=$(VERSINE) VERSINE_SOURCE_DIR=. VERSINE_PAGE=$(abspath $(BUILD))/viewer/page \
+	  node viewer/tests/screenshots.mjs docs/images out/demo/result out/line/result
 
 # Accuracy on the real recordings (docs/accuracy.md); VERSINE_DATA names their folder.
 accuracy: build

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "versine/app/progress_file.hpp"
 #include "versine/app/version.hpp"
 #include "versine/core/units.hpp"
 #include "versine/io/alignment_csv.hpp"
@@ -327,8 +328,10 @@ Expected<GeometryRun> run_geometry(const std::filesystem::path& job, std::span<c
     if (auto done = note_file("odometer", o.file, run.inputs); !done) return tl::unexpected(done.error());
     odometers.push_back(std::move(raw->series));
   }
-  auto result = compute_track_geometry(config.geometry, trajectory->series, nullptr, odometers, {}, progress);
+  ProgressFile visible(progress, folder->folder());
+  auto result = compute_track_geometry(config.geometry, trajectory->series, nullptr, odometers, {}, visible);
   if (!result) return tl::unexpected(result.error());
+  visible.finish();
   if (auto done = write_track_geometry(config.geometry, *result, *folder, progress); !done)
     return tl::unexpected(done.error());
   run.command = "geometry";

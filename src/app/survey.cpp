@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "versine/app/survey.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
 
 #include "versine/app/progress_file.hpp"
@@ -51,6 +53,9 @@ Expected<SurveyResult> compute_survey(const SurveyConfig& config, const std::fil
   auto input = read_survey_input(config, job, progress);
   if (!input) return tl::unexpected(input.error());
   watch.stage("read and check");
+  for (const Finding& f : input->record.findings) {
+    log.info(fmt::format("{}: {} x {}, {}", f.sensor, f.count, f.kind, to_string(f.action)));
+  }
 
   fusion::AidedInsInput estimator = estimator_input(*input);
   Series<sensors::GnssSample> hidden;
@@ -88,7 +93,8 @@ Expected<SurveyRun> run_survey(const std::filesystem::path& job, std::span<const
   auto writer = io::ResultFolder::create(folder);
   if (!writer) return tl::unexpected(writer.error());
   ProgressFile visible(progress, writer->folder());
-  auto result = compute_survey(*config, job, visible, log);
+  NotedLog noted(log, visible);
+  auto result = compute_survey(*config, job, visible, noted);
   if (!result) return tl::unexpected(result.error());
   visible.finish();
   return write_survey(*config, *result, *writer, progress);

@@ -13,7 +13,7 @@ namespace versine::app {
 namespace {
 
 constexpr std::size_t factor = 4;
-constexpr std::size_t coarsest = 600;  // a level of fewer buckets would be of no use to any screen
+constexpr std::size_t coarsest = 100;  // a level of fewer buckets would be of no use to any screen
 constexpr float half95 = 1.96f;
 
 template <class Better>

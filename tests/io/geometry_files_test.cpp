@@ -10,6 +10,7 @@
 #include "versine/io/adjustment_csv.hpp"
 #include "versine/io/geometry_csv.hpp"
 #include "versine/io/geometry_gis.hpp"
+#include "versine/io/geometry_table.hpp"
 #include "versine/io/geometry_xlsx.hpp"
 
 namespace versine::io {
@@ -140,6 +141,45 @@ TEST_F(GeometryFiles, AdjustmentTableTakesTheUsersColumnsAndSigns) {
   const auto refused = write_adjustment_csv(folder_ / "a.csv", sample(), &slew, nullptr, t);
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message(), HasSubstr("slew_mm"));
+}
+
+TEST_F(GeometryFiles, TableIsReadBackByColumns) {
+  const track::Geometry g = sample();
+  ASSERT_TRUE(write_geometry_csv(folder_ / "geometry.csv", g));
+  const auto table = GeometryTable::open(folder_ / "geometry.csv");
+  ASSERT_TRUE(table) << table.error().message();
+  EXPECT_EQ(table->rows(), g.size());
+  EXPECT_TRUE(table->has("sigma_gauge_mm"));
+  EXPECT_FALSE(table->has("gauge"));
+  // Asked for in another order than they stand in.
+  const std::vector<std::string> names = {"cross_level_mm", "distance_m", "sigma_gauge_mm", "mileage_m"};
+  const auto columns = table->read(names);
+  ASSERT_TRUE(columns) << columns.error().message();
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    EXPECT_NEAR((*columns)[0][i], g.at("cross_level").value[i] * 1e3, 5e-4);
+    EXPECT_DOUBLE_EQ((*columns)[1][i], g.mileage[i]);
+    EXPECT_NEAR((*columns)[2][i], 0.5, 1e-3);
+    EXPECT_DOUBLE_EQ((*columns)[3][i], g.posted_at(g.mileage[i]));
+  }
+  const auto gap = table->read(std::vector<std::string>{"height_axis_m"});
+  ASSERT_TRUE(gap);
+  EXPECT_TRUE(std::isnan((*gap)[0][205]));
+}
+
+TEST_F(GeometryFiles, TableTellsWhatIsWrong) {
+  const auto write = [&](const std::string& text) { std::ofstream(folder_ / "t.csv", std::ios::binary) << text; };
+  const auto open = [&] { return GeometryTable::open(folder_ / "t.csv"); };
+  EXPECT_FALSE(GeometryTable::open(folder_ / "none.csv"));
+  write("");
+  EXPECT_FALSE(open());
+  write("a,b\n1,2\n");
+  EXPECT_THAT(open().error().message(), HasSubstr("does not begin with distance_m"));
+  write("distance_m,mileage_m,x\n0,1,2\n1,2,3");
+  EXPECT_THAT(open().error().message(), HasSubstr("without its end"));
+  write("distance_m,mileage_m,x\n0,1,2\n1,2\n");
+  EXPECT_THAT(open()->read(std::vector<std::string>{"x"}).error().message(), HasSubstr(":3: found fewer fields"));
+  write("distance_m,mileage_m,x\n0,1,2\n1,2,3.x\n");
+  EXPECT_THAT(open()->read(std::vector<std::string>{"x"}).error().message(), HasSubstr("'3.x' is not a number"));
 }
 
 }  // namespace

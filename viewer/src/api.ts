@@ -7,7 +7,8 @@ function readToken(): string {
   const match = /[#&]token=([0-9a-f]+)/.exec(location.hash);
   if (match) {
     sessionStorage.setItem('versine-token', match[1]);
-    history.replaceState(null, '', location.pathname + location.hash.replace(/[#&]token=[0-9a-f]+/, ''));
+    const rest = location.hash.slice(1).split('&').filter((part) => part && !part.startsWith('token='));
+    history.replaceState(null, '', location.pathname + (rest.length > 0 ? `#${rest.join('&')}` : ''));
   }
   return sessionStorage.getItem('versine-token') ?? '';
 }

@@ -12,6 +12,7 @@ export interface HeaderActions {
 /** Job, verdict, place of the cursor, and what every screen offers. */
 export function header(result: Result, readout: HTMLElement, actions: HeaderActions): HTMLElement {
   const bar = element('header');
+  const compared = result.survey?.compare;
   const { accepted, text, profile, source } = result.verdict;
   const state = accepted === null ? '' : accepted ? 'good' : 'bad';
   const glyph = accepted === null ? '' : accepted ? '✓ ' : '■ ';
@@ -25,7 +26,7 @@ export function header(result: Result, readout: HTMLElement, actions: HeaderActi
   bar.append(
     element('h1', { title: `${result.folder}, Versine ${result.version}` }, result.title),
     verdict,
-    element('span', { class: 'subtitle' }, result.subtitle),
+    element('span', { class: 'subtitle' }, compared ? `minus ${compared} · ${result.subtitle}` : result.subtitle),
     element('span', { class: 'progress', role: 'status' }),
     readout,
     button('Theme', 'D', actions.theme),

@@ -122,9 +122,9 @@ export class Strip {
           gap: 6,
           grid,
           splits: (_u, _i, low, high) => this.axis.ticks(low, high, ((high - low) * 110) / Math.max(width, 1)),
-          values: (_u, v) => v.map((x) => (last ? this.axis.tick(x, v.length > 1 ? v[1] - v[0] : 1) : '')),
+          values: (u, v) => v.map((x) => (last && !this.underJump(u, x) ? this.axis.tick(x, v.length > 1 ? v[1] - v[0] : 1) : '')),
         },
-        { ...ticks, size: scaleWidth, gap: 6, space: 16, grid, values: (_u, v) => v.map((y) => minus(y)) },
+        { ...ticks, size: scaleWidth, gap: 6, space: 12, grid, values: (u, v) => v.map((y) => (this.nearEdge(u, y) ? '' : minus(y))) },
       ],
       hooks: {
         drawClear: [(u) => this.drawLimits(u)],
@@ -180,8 +180,9 @@ export class Strip {
     this.value.className = over ? `over-${over.class}` : '';
     if (this.info.companion && companion) {
       const radius = 1000 / Math.abs(reading.value);
-      this.value.textContent = Math.abs(reading.value) < 2 * half || radius > 30000 ? 'straight' : `R ${radius < 10000 ? Math.round(radius) : `${Math.round(radius / 1000)} km`} ${reading.value > 0 ? 'right' : 'left'}`;
-      second = `${this.info.companion.title} ${minus(companion.value, 0)} ${this.info.companion.unit}`;
+      this.value.textContent = Math.abs(reading.value) < 2 * half || radius > 30000 ? 'straight' : `R ${radius < 10000 ? Math.round(radius) : `${Math.round(radius / 1000)} km`}`;
+      const side = this.value.textContent === 'straight' ? '' : reading.value > 0 ? 'right · ' : 'left · ';
+      second = `${side}${this.info.companion.title} ${minus(companion.value, 0)}${side ? '' : ` ${this.info.companion.unit}`}`;
     }
     this.half.textContent = second;
     return `${title} ${number} ${interval}${over ? `, over the ${over.level}` : ''}`;
@@ -284,6 +285,17 @@ export class Strip {
       ctx.fillText(limitStyle[e.class].glyph, u.valToPos(e.peakAt, 'x', true), y);
     }
     ctx.restore();
+  }
+
+  /** Half a label would be cut off. */
+  private nearEdge(u: uPlot, y: number): boolean {
+    const at = u.valToPos(y, 'y');
+    return at < 4 || at > u.over.clientHeight - 4;
+  }
+
+  /** A tick whose label would stand under that of a jump. */
+  private underJump(u: uPlot, x: number): boolean {
+    return this.axis.jumps().some((jump) => Math.abs(u.valToPos(x, 'x') - u.valToPos(jump.x, 'x')) < 115);
   }
 
   /** "18+215 = 18+200, -15 m" over the ticks below a jump, where there is room. */

@@ -16,10 +16,15 @@ export function percent(probability: number | null): string {
   return `${p}%`;
 }
 
-/** Speaks to a screen reader; the same text twice is spoken once. */
+let speaking = 0;
+
+/** Speaks to a screen reader once things have come to rest; the same text twice is spoken once. */
 export function speak(text: string): void {
-  const live = document.getElementById('live');
-  if (live && live.textContent !== text) live.textContent = text;
+  clearTimeout(speaking);
+  speaking = window.setTimeout(() => {
+    const live = document.getElementById('live');
+    if (live && live.textContent !== text) live.textContent = text;
+  }, 200);
 }
 
 export function element<K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Record<string, string> = {}, text = ''): HTMLElementTagNameMap[K] {

@@ -31,8 +31,17 @@ export function withTheme(theme: Theme): () => void {
   };
 }
 
+const colours = new Map<string, string>();
+
+/** A colour of the present theme; looked up once a theme, since every frame asks for dozens. */
 export function css(name: string): string {
-  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const key = currentTheme() + name;
+  let value = colours.get(key);
+  if (value === undefined) {
+    value = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+    colours.set(key, value);
+  }
+  return value;
 }
 
 /** Never colour alone: each class has its own line and its own sign. */

@@ -41,6 +41,10 @@ export async function open(browser, server, { width = 1366, height = 768, theme 
   await context.addInitScript((name) => localStorage.getItem('versine-theme') ?? localStorage.setItem('versine-theme', name), theme);
   const page = await context.newPage();
   page.faults = [];
+  // A page that is being worked on (npx vite build), instead of the one in the program.
+  if (process.env.VERSINE_DIST) {
+    await page.route(/\/(app\.\w+)?(#.*)?$/, (route) => route.fulfill({ path: path.join(process.env.VERSINE_DIST, new URL(route.request().url()).pathname.slice(1) || 'index.html') }));
+  }
   page.on('pageerror', (error) => page.faults.push(String(error)));
   page.on('console', (message) => message.type() === 'error' && page.faults.push(message.text()));
   await page.goto(server.url + (hash ? `&${hash}` : ''));

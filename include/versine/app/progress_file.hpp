@@ -21,7 +21,7 @@ class ProgressFile final : public Progress {
   ProgressFile(Progress& next, std::filesystem::path folder) : next_(next), folder_(std::move(folder)) {}
   void report(std::string_view stage, double fraction) override;
   [[nodiscard]] bool cancelled() const override { return next_.cancelled(); }
-  /// A finding that is known before the end: "imu: 2 gaps".
+  /// What a person should know before the end: "imu: 2 x gap, split".
   void note(std::string text);
   void finish();
 
@@ -35,6 +35,24 @@ class ProgressFile final : public Progress {
   Clock::time_point started_ = Clock::now(), stage_started_ = started_, written_{};
   std::vector<std::pair<std::string, double>> done_;
   std::vector<std::string> notes_;
+};
+
+/// Passes messages on and notes them in the progress file.
+class NotedLog final : public Log {
+ public:
+  NotedLog(Log& next, ProgressFile& file) : next_(next), file_(file) {}
+  void info(std::string_view text) override {
+    next_.info(text);
+    file_.note(std::string(text));
+  }
+  void warn(std::string_view text) override {
+    next_.warn(text);
+    file_.note(std::string(text));
+  }
+
+ private:
+  Log& next_;
+  ProgressFile& file_;
 };
 
 /// The folder that a running job is writing for `target`; nothing when no such process is alive.

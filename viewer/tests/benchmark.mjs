@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// How fast the viewer is on 400,001 points: node benchmark.mjs [POINTS], with the environment of support.mjs.
+import { mkdtempSync, readdirSync, readFileSync, rmSync, statSync } from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
+import { columns, writeResult } from './fixture.mjs';
+import { browse, loaded, open, serve } from './support.mjs';
+
+const count = Number(process.argv[2] ?? 400001);
+const folder = mkdtempSync(path.join(os.tmpdir(), 'versine-bench-'));
+const only = columns.filter((c) => c !== 'cross_level_mm');
+writeResult(path.join(folder, 'result'), { count, only });
+const size = statSync(path.join(folder, 'result', 'geometry.csv')).size;
+const browser = await browse();
+const median = (a) => [...a].sort((x, y) => x - y)[a.length >> 1];
+
+/** CPU seconds so far of a process and all below it: what a loaded machine cannot stretch. */
+function cpu(root) {
+  const all = readdirSync('/proc').filter((n) => /^\d+$/.test(n)).flatMap((n) => {
+    try {
+      const text = readFileSync(`/proc/${n}/stat`, 'utf8');
+      const rest = text.slice(text.lastIndexOf(')') + 2).split(' ');
+      return [{ id: Number(n), parent: Number(rest[1]), ticks: Number(rest[11]) + Number(rest[12]) }];
+    } catch {
+      return [];
+    }
+  });
+  const below = new Set([root]);
+  for (let size = 0; size !== below.size; ) {
+    size = below.size;
+    for (const p of all) if (below.has(p.parent)) below.add(p.id);
+  }
+  return all.filter((p) => below.has(p.id)).reduce((sum, p) => sum + p.ticks, 0) / 100;
+}
+
+const rounds = { serving: [], 'serving, CPU': [], interactive: [], 'interactive, CPU': [], loaded: [] };
+let page;
+let server;
+for (let round = 0; round < 5; ++round) {
+  server?.stop();
+  await page?.context().close();
+  const start = performance.now();
+  server = await serve(path.join(folder, 'result'));
+  rounds.serving.push(performance.now() - start);
+  rounds['serving, CPU'].push(1000 * cpu(server.child.pid));
+  const before = cpu(process.pid);
+  page = await open(browser, server);
+  rounds['interactive, CPU'].push(1000 * (cpu(process.pid) - before));
+  rounds.interactive.push(await page.evaluate(() => performance.getEntriesByName('versine-ready')[0].startTime));
+  await loaded(page);
+  rounds.loaded.push(await page.evaluate(() => performance.now()));
+}
+const strips = await page.$$eval('.strip', (all) => all.length);
+
+/** Wheel events, one a frame; frame times in ms. */
+async function frames(name, event) {
+  await page.evaluate(() => (location.hash = 'from=20000&to=60000&at=40000'));
+  await page.waitForTimeout(500);
+  const before = cpu(process.pid);
+  const times = await page.evaluate(
+    (init) =>
+      new Promise((resolve) => {
+        const target = document.querySelector('.strip-box');
+        const box = target.getBoundingClientRect();
+        const times = [];
+        let last = 0;
+        let n = 0;
+        const frame = (now) => {
+          if (last > 0) times.push(now - last);
+          last = now;
+          if (++n > 120) return resolve(times);
+          const sign = n <= 60 ? 1 : -1;
+          target.dispatchEvent(new WheelEvent('wheel', { bubbles: true, cancelable: true, clientX: box.left + box.width / 2, clientY: box.top + 5, ...init, deltaY: sign * init.deltaY }));
+          requestAnimationFrame(frame);
+        };
+        requestAnimationFrame(frame);
+      }),
+    event,
+  );
+  const spent = (1000 * (cpu(process.pid) - before)) / times.length;
+  const sorted = times.sort((a, b) => a - b);
+  console.log(`${name}: median ${median(sorted).toFixed(1)} ms a frame, 95 % below ${sorted[Math.floor(0.95 * sorted.length)].toFixed(1)} ms; CPU of all processes ${spent.toFixed(1)} ms a frame`);
+}
+
+console.log(`${count} points, ${strips} strips seen, geometry.csv ${(size / 1e6).toFixed(0)} MB; load ${os.loadavg()[0].toFixed(1)} on ${os.cpus().length} cores`);
+for (const [name, times] of Object.entries(rounds)) console.log(`${name}: median ${median(times).toFixed(0)} ms of ${times.map((t) => t.toFixed(0)).join(', ')}`);
+await frames('pan', { deltaY: 40, shiftKey: true });
+await frames('zoom', { deltaY: -12 });
+if (page.faults.length > 0) console.error(page.faults);
+server.stop();
+await browser.close();
+rmSync(folder, { recursive: true });
