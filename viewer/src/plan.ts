@@ -33,6 +33,8 @@ export class Plan {
   private readonly cursor = new Feature<Point>();
   private readonly window = new Feature<MultiLineString>();
   private readonly lines: VectorSource = new VectorSource();
+  private next: () => void = () => {};
+  private waiting = 0;
 
   constructor(
     private readonly survey: Survey,
@@ -81,7 +83,18 @@ export class Plan {
     });
   }
 
+  /** The map follows ten times a second: it is a matter of where, not of how fast. */
   show(from: number, to: number, cursor: number): void {
+    this.next = () => this.move(from, to, cursor);
+    if (this.waiting !== 0) return;
+    this.next();
+    this.waiting = window.setTimeout(() => {
+      this.waiting = 0;
+      this.next();
+    }, 100);
+  }
+
+  private move(from: number, to: number, cursor: number): void {
     const at = this.place(cursor);
     if (at) this.cursor.setGeometry(new Point(at));
     const parts = this.survey.plan.map((line) => {
@@ -100,6 +113,7 @@ export class Plan {
   }
 
   dispose(): void {
+    clearTimeout(this.waiting);
     this.map.setTarget(undefined);
     this.map.dispose();
   }

@@ -4,8 +4,8 @@ import type { Series } from './contract';
 
 /** Beyond this many samples the browser asks the server for what it draws instead of holding everything. */
 export const clientLimit = 500_000;
-const factor = 4;
-const maxBuckets = 2400;
+const factor = 2;
+const maxBuckets = 1400; // some two a pixel of the widest strip on a usual screen
 
 /** Smallest of mins and lowers, largest of maxs and uppers of `factor` neighbours; NaN only where all are. */
 function reduce(series: Series): Series {

@@ -6,6 +6,7 @@ export class View {
   to: number;
   cursor: number;
   private readonly listeners: (() => void)[] = [];
+  private writing = 0;
 
   constructor(
     readonly first: number,
@@ -17,6 +18,7 @@ export class View {
     this.cursor = (first + last) / 2;
     this.readHash();
     addEventListener('hashchange', () => this.readHash() && this.emit(false), { signal });
+    signal.addEventListener('abort', () => clearTimeout(this.writing));
   }
 
   onChange(listener: () => void): void {
@@ -53,11 +55,17 @@ export class View {
   }
 
   private emit(write: boolean): void {
-    if (write) {
-      const text = `from=${this.from.toFixed(2)}&to=${this.to.toFixed(2)}&at=${this.cursor.toFixed(2)}`;
-      history.replaceState(null, '', `#${text}`);
-    }
+    if (write) this.writeHash();
     for (const listener of this.listeners) listener();
+  }
+
+  /** The address follows a tenth of a second behind: it costs more than a frame of drawing. */
+  private writeHash(): void {
+    if (this.writing !== 0) return;
+    this.writing = window.setTimeout(() => {
+      this.writing = 0;
+      history.replaceState(null, '', `#from=${this.from.toFixed(2)}&to=${this.to.toFixed(2)}&at=${this.cursor.toFixed(2)}`);
+    }, 100);
   }
 
   private readHash(): boolean {

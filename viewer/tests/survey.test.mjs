@@ -43,7 +43,7 @@ const km = (page) => page.textContent('.km');
 const typed = (text) => Number(text.replace('−', '-').replace(/^[■◆▲] /, ''));
 async function press(page, ...keys) {
   for (const key of keys) await page.keyboard.press(key);
-  await page.waitForTimeout(60);
+  await page.waitForTimeout(160);
 }
 async function goTo(page, text) {
   await page.keyboard.press('g');
@@ -120,16 +120,16 @@ test('keys move, zoom and fit', async () => {
   const box = await (await page.$('[data-strip="level_left_d1_mm"] .u-over')).boundingBox();
   await page.mouse.move(box.x + box.width / 4, box.y + 10);
   await page.mouse.wheel(0, -400);
-  await page.waitForTimeout(60);
+  await page.waitForTimeout(160);
   [from, to] = await range();
   assert.ok(Math.abs(from + (to - from) / 4 - 500) < 20 && to - from < 1000);
   await page.mouse.dblclick(box.x + 30, box.y + 10);
-  await page.waitForTimeout(60);
+  await page.waitForTimeout(160);
   await page.mouse.move(box.x + 0.25 * box.width, box.y + 10);
   await page.mouse.down();
   await page.mouse.move(box.x + 0.5 * box.width, box.y + 12, { steps: 4 });
   await page.mouse.up();
-  await page.waitForTimeout(60);
+  await page.waitForTimeout(160);
   [from, to] = await range();
   assert.ok(Math.abs(from - 500) < 5 && Math.abs(to - 1000) < 5, `${from} to ${to}`);
   assert.deepEqual(page.faults, []);
