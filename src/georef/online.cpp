@@ -107,11 +107,11 @@ std::optional<OnlinePosition> OnlineGeoreferencer::Bank::add(const Fix& fix) {
 }
 
 void OnlineGeoreferencer::Bank::start(const Seen& s) {
-  // Where the vehicle heads, when it moves and the receiver tells no direction: from the fixes before.
-  Eigen::Vector2d moved = Eigen::Vector2d::Zero();
-  if (!recent_.empty()) moved = s.point - recent_.front().point;
-  const bool standing = !s.speed || *s.speed < options_.journeys.standing;
-  if (!standing && moved.norm() < 3.0) return;  // one more fix
+  // A vehicle may be moving when the first fix comes: its speed must be known, and its heading from the fixes before.
+  if (!s.speed) return;
+  const Eigen::Vector2d moved = s.point - recent_.front().point;
+  const bool standing = *s.speed < options_.journeys.standing;
+  if (!standing && moved.norm() < 3.0) return;
   const double a = options_.without_imu.sigma, v = standing ? 1.0 : 3.0, unknown = 3.0 * s.sigma + 3.0;
   for (const auto& hit : map_.index.near(s.point, std::max(options_.inference.radius, 4.0 * s.sigma))) {
     for (const bool reversed : {false, true}) {
