@@ -4,7 +4,7 @@ JOBS ?= $(shell nproc)
 BUILD := build/release
 VERSINE := $(BUILD)/apps/versine/versine
 
-.PHONY: all setup build test demo screenshots accuracy figures benchmarks format clean
+.PHONY: all setup build test demo screenshots accuracy figures benchmarks format clean accuracy-positioning
 all: build
 
 setup:
@@ -53,6 +53,17 @@ figures: benchmarks
 benchmarks: build
 	cmake -B $(BUILD) -DVERSINE_BENCHMARKS=ON
 	cmake --build $(BUILD) -j $(JOBS)
+
+# Total station and GNSS: the tables of docs/total-station.md and docs/gnss.md.
+accuracy-positioning: setup
+	cmake --preset release -DVERSINE_BENCHMARKS=ON
+	cmake --build $(BUILD) -j $(JOBS) --target versine versine_station_accuracy versine_positioning_real
+	$(BUILD)/benchmarks/versine_station_accuracy benchmarks/scenarios/station-tunnel.toml
+	$(BUILD)/benchmarks/versine_station_accuracy benchmarks/scenarios/station-line.toml
+	$(BUILD)/benchmarks/versine_positioning_real $${VERSINE_DATA:-../shared/data}
+	benchmarks/rinex_hour.py out/hour
+	time -p $(VERSINE) gnss out/hour/job.toml -o out/hour/result
+	benchmarks/rinex_hour.py --compare out/hour out/hour/result
 
 format:
 	git ls-files '*.cpp' '*.hpp' | xargs clang-format -i

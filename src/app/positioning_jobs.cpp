@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "network_report.hpp"
 #include "versine/app/gnss.hpp"
 #include "versine/app/stationing.hpp"
 #include "versine/app/version.hpp"
@@ -140,26 +141,6 @@ void write_stations(const fs::path& folder, const StationingOutcome& o) {
   }
 }
 
-nlohmann::ordered_json write_network(const fs::path& folder, const StationingOutcome& o,
-                                     const stationing::NetworkResult& n) {
-  std::ofstream points(folder / "points.csv");
-  points << "name,latitude_deg,longitude_deg,height_m,sigma_north_mm,sigma_east_mm,sigma_down_mm,offset_north_mm,"
-            "offset_east_mm,offset_down_mm,control_test,moved\n";
-  nlohmann::ordered_json moved = nlohmann::ordered_json::array();
-  for (const auto& p : n.points) {
-    const auto g = o.frame.to_geodetic(p.position);
-    const Eigen::Vector3d s = p.covariance.diagonal().cwiseMax(0.0).cwiseSqrt() * 1e3;
-    const std::string offset =
-        p.offset ? fmt::format("{:.3f},{:.3f},{:.3f}", p.offset->x() * 1e3, p.offset->y() * 1e3, p.offset->z() * 1e3)
-                 : ",,";
-    points << fmt::format("{},{:.12f},{:.12f},{:.6f},{:.3f},{:.3f},{:.3f},{},{:.2f},{}\n", p.name,
-                          g.latitude / units::deg, g.longitude / units::deg, g.height, s.x(), s.y(), s.z(), offset,
-                          p.control_test, p.moved ? 1 : 0);
-    if (p.moved) moved.push_back(p.name);
-  }
-  return {{"sigma0", n.sigma0}, {"redundancy", n.redundancy}, {"points", n.points.size()}, {"moved", moved}};
-}
-
 }  // namespace
 
 Expected<PositioningRun> run_gnss(const fs::path& path, std::span<const std::string> overrides, const fs::path& output,
@@ -228,7 +209,10 @@ Expected<PositioningRun> run_stationing(const fs::path& path, std::span<const st
     job->network.significance = job->total_station.options.significance;
     auto n = stationing::adjust_network(o->reduced, o->network, job->total_station.instrument, job->network);
     if (!n) return tl::unexpected(n.error());
-    summary["network"] = write_network(report->folder.folder(), *o, *n);
+    if (auto done = write_network_points(report->folder.path("points.csv"), o->frame, *n); !done) {
+      return tl::unexpected(done.error());
+    }
+    summary["network"] = nlohmann::ordered_json::parse(network_summary_json(*n));
     text += fmt::format("network: sigma0 {:.3f}, {} redundant observations\n", n->sigma0, n->redundancy);
   }
   return close_report(*report, std::move(o->record), summary, std::move(text));

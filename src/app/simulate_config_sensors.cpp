@@ -129,14 +129,24 @@ void describe_total_station(ConfigVisitor& v, sim::TotalStationModel& m) {
   v.value("point_height_m", m.point_height, metres("And above the rails."));
   v.value("sigma_point_mm", m.sigma_point, millimetres("Of their coordinates."));
   v.value("targets", m.targets, {.doc = "Points sighted from one place.", .min = 2, .max = 50});
+  v.value("faces", m.faces, {.doc = "In which each point is read: 1, or 2.", .min = 1, .max = 2});
+  v.value("collimation_arcsec", m.collimation,
+          {.doc = "Error of the instrument; two faces cancel it.", .unit = "arcsec", .scale = units::arcsec});
+  v.value("index_error_arcsec", m.index_error,
+          {.doc = "Of the vertical circle, as before.", .unit = "arcsec", .scale = units::arcsec});
   v.value("sigma_angle_arcsec", m.sigma_angle,
-          {.doc = "Of directions and zenith angles.", .unit = "arcsec", .scale = units::arcsec, .min = 0});
+          {.doc = "Of directions and zenith angles in both faces once (ISO 17123-3).",
+           .unit = "arcsec",
+           .scale = units::arcsec,
+           .min = 0});
   v.value("sigma_distance_mm", m.sigma_distance, millimetres("Of distances."));
   v.value("sigma_distance_ppm", m.sigma_distance_ppm,
           {.doc = "Of distances.", .unit = "ppm", .scale = units::ppm, .min = 0});
   v.value("refraction", m.refraction, {.doc = "Coefficient k of the light's bending.", .min = -5, .max = 5});
   v.value("sighting_blunder", m.sighting_blunder, share("Probability that a sighting is wrong."));
   v.value("sighting_blunder_mm", m.sighting_blunder_size, millimetres("By how much."));
+  v.value("moved_points", m.moved_points, {.doc = "Control points that have moved since their survey.", .min = 0});
+  v.value("moved_mm", m.moved_by, millimetres("By how much."));
 }
 
 void describe_axle_box(ConfigVisitor& v, sim::AxleBoxModel& m) {

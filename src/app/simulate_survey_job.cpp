@@ -23,6 +23,27 @@ std::string wheel_noise(const simulation::OdometerModel& o) {
       "sigma_m = {:.3g}\nrandom_walk_mpsqrtm = {:.3g}\nscale_sigma = {:.3g}\nscale_walk_psqrts = {:.3g}\n", resolution,
       std::hypot(3e-5, slips), std::max(2.0 * o.scale, 1e-4), std::max(o.scale_walk, 1e-6));
 }
+
+/// Raw readings where there are some; positions of the same stations stand below them, to be put in their place.
+std::string total_station_tables(const SimulateConfig& c, const simulation::SimulatedRecording& r,
+                                 const Eigen::Matrix3d& C_bv) {
+  const std::string lever = list(C_bv * c.total_station.place);
+  const geodesy::Euler m = geodesy::to_euler(Eigen::Matrix3d(C_bv * geodesy::to_matrix(c.total_station.mounting)));
+  const std::string positions = fmt::format("[landmarks]\nfile = \"landmarks.csv\"\nlever_arm_m = {}\n", lever);
+  if (r.stationings.empty()) return r.landmarks.empty() ? "" : "\n" + positions;
+  std::string text = fmt::format(
+      "\n[total_station]\nreadings = [\"readings.csv\"]\ncontrol = [\"control.csv\"]\nlever_arm_m = {}\n"
+      "mounting_deg = {}\nangle_sigma_arcsec = {:.4g}\ndistance_sigma_mm = {:.4g}\ndistance_sigma_ppm = {:.4g}\n",
+      lever, list(Eigen::Vector3d(m.roll, m.pitch, m.yaw) / units::deg), c.total_station.sigma_angle / units::arcsec,
+      c.total_station.sigma_distance / units::mm, c.total_station.sigma_distance_ppm / units::ppm);
+  if (c.total_station.faces == 1) text += "one_face = true\n";
+  if (!r.landmarks.empty()) {
+    text += "\n# Positions that were computed elsewhere: put this table in place of [total_station].\n# ";
+    for (const char ch : positions) text += ch == '\n' ? "\n# " : std::string(1, ch);
+    text.resize(text.size() - 2);
+  }
+  return text;
+}
 }  // namespace
 
 std::string survey_job_for(const SimulateConfig& c, const simulation::SimulatedRecording& r, bool with_design) {
@@ -68,15 +89,7 @@ std::string survey_job_for(const SimulateConfig& c, const simulation::SimulatedR
         "0.00003\n",
         2e-5 * rough, 1e-5 * rough, 2e-4 * rough);
   }
-  if (!r.landmarks.empty()) {
-    text +=
-        fmt::format("\n[landmarks]\nfile = \"landmarks.csv\"\nlever_arm_m = {}\n", list(C_bv * c.total_station.place));
-  }
-  if (!r.stationings.empty() && r.landmarks.empty()) {
-    text +=
-        fmt::format("\n[total_station]\nreadings = [\"readings.csv\"]\ncontrol = [\"control.csv\"]\nlever_arm_m = {}\n",
-                    list(C_bv * c.total_station.place));
-  }
+  text += total_station_tables(c, r, C_bv);
   if (!c.has_vehicle && !r.imu.empty()) {
     const auto& track = c.scenario.track;
     text += fmt::format("\n[geometry]\ncrs = \"{}\"\n", track.alignment.crs);

@@ -32,10 +32,15 @@ sensors::LandmarkSample landmark_at(const std::string& name, Time from, Time to,
 void add_station(const StationResult& s, const StationingProcessing& p, StationingOutcome& out) {
   if (!s.from || !s.to) return;
   auto l = landmark_at(s.name, *s.from, *s.to, s.position, s.covariance.topLeftCorner<3, 3>(), out.frame);
-  if (p.attitude) {
+  if (p.mounting) {
     const Eigen::Matrix3d to_n = out.frame.rotation_from(l.position).transpose();
     l.q_ns = Eigen::Quaterniond(to_n * s.q_ms.toRotationMatrix()).normalized();
     l.attitude_covariance = to_n * s.covariance.block<3, 3>(3, 3) * to_n.transpose();
+    // The station's correction of the position is the negative error.
+    l.position_attitude = -to_n * s.covariance.block<3, 3>(0, 3) * to_n.transpose();
+    // The mounting's error is the same at all stations; as noise of n stations its variance must count n times.
+    const double n = static_cast<double>(out.run.stations.size());
+    l.attitude_covariance += n * p.mounting_sigma * p.mounting_sigma * Eigen::Matrix3d::Identity();
   }
   out.landmarks.push_back(std::move(l));
 }
@@ -114,6 +119,24 @@ Expected<std::vector<io::ControlEntry>> read_control(const StationingProcessing&
   return all;
 }
 
+/// Face I alone holds the instrument's axis errors: somebody must have said that they are known.
+Expected<void> check_faces(const std::vector<stationing::Stationing>& stationings, const StationingProcessing& p) {
+  if (p.instrument.one_face || p.instrument.collimation != 0.0 || p.instrument.index_error != 0.0) return {};
+  for (const auto& s : stationings) {
+    const auto two = [](const stationing::Sighting& r) { return r.face == stationing::Face::two; };
+    if (s.sightings.empty() || std::any_of(s.sightings.begin(), s.sightings.end(), two)) continue;
+    return fail({.file = p.readings.front().written,
+                 .line = s.sightings.front().line,
+                 .field = "station " + s.name,
+                 .found = "readings in face I only",
+                 .expected = "face II too, which cancels collimation and index error",
+                 .advice =
+                     "measure face II; or give collimation_arcsec and index_error_arcsec of a calibration; or, if "
+                     "the instrument corrects them itself, say one_face = true"});
+  }
+  return {};
+}
+
 }  // namespace
 
 StationingOutcome compute_landmarks(std::vector<stationing::Stationing> stationings, stationing::ControlNetwork network,
@@ -172,6 +195,7 @@ Expected<StationingOutcome> process_stationing(const StationingProcessing& p, Pr
     stationings.insert(stationings.end(), book->stationings.begin(), book->stationings.end());
     warnings.insert(warnings.end(), book->warnings.begin(), book->warnings.end());
   }
+  if (auto fine = check_faces(stationings, p); !fine) return tl::unexpected(fine.error());
   for (const auto& finding : stationing::check(*network)) warnings.push_back("control list: " + finding.text);
   auto out = compute_landmarks(std::move(stationings), std::move(*network), frame, p, progress);
   out.record.warnings.insert(out.record.warnings.begin(), warnings.begin(), warnings.end());

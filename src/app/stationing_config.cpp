@@ -31,6 +31,8 @@ void describe_instrument(ConfigVisitor& v, stationing::Instrument& i) {
           {.doc = "From a calibration, for targets read in one face.", .unit = "arcsec", .scale = units::arcsec});
   v.value("index_error_arcsec", i.index_error,
           {.doc = "Of the vertical circle, as before.", .unit = "arcsec", .scale = units::arcsec});
+  v.value("one_face", i.one_face,
+          {.doc = "Readings in face I alone are meant so: the instrument corrects its axis errors itself."});
   v.value("scale_ppm", i.scale_ppm, {.doc = "Known correction of the distances' scale.", .unit = "ppm"});
   v.value("wavelength_um", i.wavelength, {.doc = "Of the distance meter.", .unit = "um", .min = 0.4, .max = 1.1});
   v.value("refraction", i.refraction, {.doc = "Coefficient k; 0 in still tunnel air.", .min = -4, .max = 4});
@@ -80,8 +82,6 @@ void describe(ConfigVisitor& v, StationingProcessing& s) {
       {.doc = "Where the instrument stands: on the trolley, or beside the track watching its prism."});
   v.value("prism", s.prism,
           {.doc = "Number of the trolley's prism in the readings, when the instrument stands beside."});
-  v.value("attitude", s.attitude,
-          {.doc = "Hand the instrument's attitude to the filter too, when it stands on the trolley."});
   describe_instrument(v, s.instrument);
   describe_computation(v, s.options);
 }

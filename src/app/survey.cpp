@@ -68,6 +68,13 @@ Expected<SurveyResult> compute_survey(const SurveyConfig& config, const std::fil
     result.withheld = compare_withheld(hidden, solved->solution.smoothed, config.estimator.gnss_lever.l_b);
   }
   watch.stage("align, filter and smooth");
+  if (config.total_station.check_control && input->total_station) {
+    auto checked = check_control(*input->total_station, config.total_station, std::move(estimator), config.estimator,
+                                 progress, log);
+    if (!checked) return tl::unexpected(checked.error());
+    result.control = std::move(*checked);
+    watch.stage("control points");
+  }
   if (config.geometry.present) {
     const auto& solution = solved->solution;
     auto geometry = compute_track_geometry(config.geometry, solution.smoothed, &solution.chain, input->odometers,

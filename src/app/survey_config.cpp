@@ -5,6 +5,7 @@
 
 #include "versine/app/survey_landmark.hpp"
 #include "versine/core/units.hpp"
+#include "versine/geodesy/attitude.hpp"
 
 namespace versine::app {
 
@@ -190,8 +191,30 @@ void describe_filter(ConfigVisitor& v, fusion::AidedInsOptions& e) {
           {.doc = "After so many in a row the filter, not the sensor, is "
                   "doubted.",
            .min = 1});
+  v.value(
+      "doubt_after_s", e.doubt_after,
+      seconds("With positions, only when the rejections have lasted this long: wrong ambiguities last for seconds."));
   v.value("monitor_length", e.monitor_length,
           {.doc = "Innovations whose mean is watched for slow faults; 0: off.", .min = 0});
+}
+
+/// The instrument's axes: the zero of its circle, to its right, down its standing axis.
+void describe_instrument_mounting(ConfigVisitor& v, SurveyConfig& c) {
+  auto& t = c.total_station;
+  v.value(
+      "mounting_deg", t.mounting,
+      {.doc = "Attitude of the instrument on the trolley against the IMU: roll, pitch, yaw that turn the IMU's axes "
+              "into the instrument's (circle's zero, right, down); given, its attitude goes to the filter too.",
+       .unit = "deg"});
+  if (t.mounting) {
+    const Eigen::Vector3d m = *t.mounting * units::deg;
+    c.estimator.q_bs = geodesy::to_quaternion(geodesy::Euler{m.x(), m.y(), m.z()});
+  }
+  v.value("mounting_sigma_arcsec", t.mounting_sigma,
+          {.doc = "What is unknown of it.", .unit = "arcsec", .scale = units::arcsec, .min = 0});
+  v.value("check_control", t.check_control,
+          {.doc = "Adjust all stations and control points together with the trajectory (control_points.csv), and name "
+                  "points that have moved since their survey."});
 }
 
 void describe_output(ConfigVisitor& v, SurveyConfig& c) {
@@ -239,6 +262,7 @@ void describe(ConfigVisitor& v, SurveyConfig& c) {
             describe(t, c.total_station);
             describe_lever(t, "lever_arm_m", "", c.estimator.landmark_lever,
                            "From the IMU to the instrument or prism.");
+            describe_instrument_mounting(t, c);
           });
   v.table("alignment", "Initial attitude and position.", [&](ConfigVisitor& t) { describe_alignment(t, c); });
   v.table("filter", "The estimator.", [&](ConfigVisitor& t) { describe_filter(t, c.estimator); });

@@ -118,6 +118,7 @@ Expected<void> solve_total_station(const SurveyConfig& config, SurveyInput& inpu
   input.landmarks.samples.insert(input.landmarks.samples.end(), solved->landmarks.begin(), solved->landmarks.end());
   std::sort(input.landmarks.samples.begin(), input.landmarks.samples.end(),
             [](const auto& a, const auto& b) { return a.time < b.time; });
+  input.total_station = std::move(*solved);
   return {};
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "network_report.hpp"
 #include "versine/app/landmark_residuals.hpp"
 #include "versine/app/version.hpp"
 #include "versine/core/units.hpp"
@@ -71,6 +72,7 @@ json summary_of(const SurveyConfig& config, const SurveyResult& result, const st
                                                                        {"sigma", errors.back().sigma(k)}};
     }
   }
+  if (result.control) out["network"] = json::parse(network_summary_json(result.control->network));
   if (result.geometry) out["geometry"] = json::parse(geometry_summary_json(*result.geometry));
   if (result.withheld) {
     const WithheldErrors& w = *result.withheld;
@@ -99,7 +101,7 @@ std::string text_of(const SurveyResult& result, const json& s) {
     text += f.count > 0 ? fmt::format("  {}: {} x {}, {}\n", f.sensor, f.count, f.kind, to_string(f.action))
                         : fmt::format("  {}: {}\n", f.kind, f.detail);
   }
-  for (const auto& warning : result.estimate.solution.record.warnings) text += "  warning: " + warning + "\n";
+  for (const auto& warning : result.warnings) text += "  warning: " + warning + "\n";
   if (result.geometry) text += geometry_summary_text(*result.geometry);
   if (s.contains("withheld")) {
     const auto& w = s["withheld"];
@@ -173,8 +175,16 @@ Expected<SurveyRun> write_survey(const SurveyConfig& config, SurveyResult& resul
   if (result.geometry) {
     writers.emplace_back([&] { return write_track_geometry(config.geometry, *result.geometry, folder, progress); });
   }
+  if (result.control) {
+    writers.emplace_back([&] {
+      return write_network_points(folder.path("control_points.csv"), result.input.total_station->frame,
+                                  result.control->network);
+    });
+  }
   RunRecord record = std::move(result.input.record);
   record.append(solution.record);
+  if (result.control) record.append(result.control->record);
+  result.warnings = record.warnings;  // the geometry's summary tells its own
   if (result.geometry) record.append(result.geometry->geometry.record);
   writers.emplace_back([&] {
     return io::write_rejections_csv(folder.path("rejections.csv"), record.rejections, solution.smoothed.scale);

@@ -39,7 +39,7 @@ class Judge {
   struct Sensor {
     std::size_t used = 0, rejected = 0, in_a_row = 0, rows = 0;
     double nis = 0.0;
-    Time last_kept{INT64_MIN / 2};
+    Time last_kept{INT64_MIN / 2}, first_in_a_row;
     std::optional<filter::InnovationMonitor> monitor;
     std::optional<std::size_t> finding;
   };

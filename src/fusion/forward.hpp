@@ -147,8 +147,14 @@ class Forward {
       }
       case Event::Kind::landmark: {
         const sensors::LandmarkSample& s = in_.landmarks[i];
-        update("landmark", t, landmark_position(moment_, l_, s, o_.landmark_lever.l_b), false, out);
-        if (s.q_ns) update("landmark attitude", t, landmark_attitude(moment_, l_, s, o_.q_bs), false, out);
+        const Eigen::Vector3d& lever = o_.landmark_lever.l_b;
+        const bool used = update("landmark", t, landmark_position(moment_, l_, s, lever), false, out);
+        if (s.q_ns) {
+          update("landmark attitude", t,
+                 used ? landmark_attitude_after_position(moment_, l_, s, lever, o_.q_bs)
+                      : landmark_attitude(moment_, l_, s, o_.q_bs),
+                 false, out);
+        }
         break;
       }
       case Event::Kind::heading:
@@ -198,8 +204,9 @@ class Forward {
            o_.constraint_peak * speed);
   }
 
-  /// `peak`: single errors may be so much larger than R tells before they count as faults.
-  void update(const char* sensor, Time t, filter::Linearized l, bool often, Steps<N>& out, double peak = 0.0) {
+  /// `peak`: single errors may be so much larger than R tells before they count as faults. Returns whether the
+  /// measurement was used.
+  bool update(const char* sensor, Time t, filter::Linearized l, bool often, Steps<N>& out, double peak = 0.0) {
     const int m = l.rows();
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, filter::max_rows, filter::max_states> a(
         m, l_.size());
@@ -214,13 +221,13 @@ class Forward {
       else
         inflation_ = std::max(inflation_, std::min(1e8, l.z.squaredNorm()));
     }
-    if (verdict != Judge::Verdict::use) return;
+    if (verdict != Judge::Verdict::use) return false;
 
     // Uncorrelated rows of unit variance.
     const Eigen::LLT<
         Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, filter::max_rows, filter::max_rows>>
         llt(l.R);
-    if (llt.info() != Eigen::Success) return;
+    if (llt.info() != Eigen::Success) return false;
     llt.matrixL().solveInPlace(l.z);
     llt.matrixL().solveInPlace(l.H);
     Vector x = Vector::Zero(l_.size());
@@ -240,6 +247,7 @@ class Forward {
     filter::symmetrize<N>(P_);
     moment_.estimate = without_error(moment_.estimate, l_, x);
     refresh();
+    return true;
   }
 
   void emit(std::size_t next_sample, Steps<N>& out) {

@@ -48,7 +48,11 @@ Agreement compare_directions(Series<GnssSample> combined, const Series<GnssSampl
     const auto apart =
         x != nullptr && y != nullptr && (fixed_x || fixed_y) ? contradiction(*x, *y, options) : std::nullopt;
     if (!apart) {
-      if (s.fix == FixType::fixed && fixed_x && fixed_y) ++out.confirmed;
+      if (s.fix == FixType::fixed && fixed_x && fixed_y) {
+        ++out.confirmed;
+        // Both directions see the same phases: their mean is no better than one of them.
+        s.sigma_ned = s.sigma_ned.cwiseMax(x->sigma_ned.cwiseMin(y->sigma_ned));
+      }
       open = nullptr;
       continue;
     }

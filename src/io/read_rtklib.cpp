@@ -204,6 +204,11 @@ Expected<Read<Series<GnssSample>>> read_rtklib(LineReader lines, const GnssFile&
     if (sample.sigma_ned.minCoeff() >= 0.0 && sample.sigma_ned.maxCoeff() > 0.0) {
       sample.sigma_ned = sample.sigma_ned.cwiseMax(0.5e-4);
     }
+    if (sample.sigma_ned.isZero(0.0)) {
+      // A fixed position's variance is a small difference of large numbers: now and then nothing is left of it.
+      faults.add("no standard deviation", lines.line_number(), "");
+      continue;
+    }
     if (!(sample.sigma_ned.minCoeff() > 0.0)) {
       return wrong(fmt::format("a standard deviation of {}", sample.sigma_ned.minCoeff()), "positive sdn, sde and sdu",
                    "delete the line, or solve again with RTKLIB's standard deviations");

@@ -40,26 +40,66 @@ double circle(double angle) {
   return angle - turn * std::floor(angle / turn);
 }
 
-stationing::Sighting sight(const Vector3d& target_s, const std::string& name, const TotalStationModel& model,
-                           RandomStream& random) {
-  const double distance = target_s.norm();
-  stationing::Sighting s;
-  s.point = name;
-  const double horizontal = std::hypot(target_s.x(), target_s.y());
-  double along = (model.sigma_distance + model.sigma_distance_ppm * distance) * random.normal();
-  double right = model.sigma_angle * random.normal(), up = model.sigma_angle * random.normal();
+/// A point as the station sees it: angles without the instrument's axis errors, and the error of a blunder.
+struct Seen {
+  double direction = 0.0, zenith = 0.0, distance = 0.0;
+  Vector3d blunder = Vector3d::Zero();  ///< across, up, along, m
+};
+
+Seen see(const Vector3d& target_s, const TotalStationModel& model, RandomStream& random) {
+  const double distance = target_s.norm(), horizontal = std::hypot(target_s.x(), target_s.y());
+  Seen s;
   if (random.chance(model.sighting_blunder)) {
-    // A reflection, a wrong prism or a knock: one of the three readings is off.
-    const double size = model.sighting_blunder_size * (random.chance(0.5) ? 1.0 : -1.0);
-    const double which = random.uniform();
-    (which < 1.0 / 3 ? along : which < 2.0 / 3 ? right : up) += which < 1.0 / 3 ? size : size / distance;
+    // A reflection, a wrong prism or a knock: one of the three readings is off, in all faces.
+    const auto which = static_cast<Eigen::Index>(3.0 * random.uniform());
+    s.blunder[std::min<Eigen::Index>(which, 2)] = model.sighting_blunder_size * (random.chance(0.5) ? 1.0 : -1.0);
   }
-  s.direction = circle(std::atan2(target_s.y(), target_s.x()) + right * distance / std::max(horizontal, 0.1));
+  s.direction = std::atan2(target_s.y(), target_s.x()) + s.blunder.x() / std::max(horizontal, 0.1);
   // Light bends towards the Earth: the target looks higher.
   constexpr double earth_radius = 6371000.0;
-  s.zenith = std::acos(-target_s.z() / distance) - 0.5 * model.refraction * distance / earth_radius + up;
-  s.distance = distance + along;
+  s.zenith =
+      std::acos(-target_s.z() / distance) - 0.5 * model.refraction * distance / earth_radius - s.blunder.y() / distance;
+  // The error of a distance belongs to the line: reading it again does not change it.
+  s.distance =
+      distance + (model.sigma_distance + model.sigma_distance_ppm * distance) * random.normal() + s.blunder.z();
   return s;
+}
+
+/// The readings of a point in each face: collimation and index error have opposite signs in them.
+void read(const Seen& seen, const std::string& point, const TotalStationModel& model, RandomStream& random,
+          stationing::Stationing& station) {
+  const double single = std::sqrt(2.0) * model.sigma_angle;  // of one face
+  for (int face = 1; face <= model.faces; ++face) {
+    const double sign = face == 1 ? -1.0 : 1.0, turned = face == 1 ? 0.0 : std::numbers::pi;
+    const double right = single * random.normal(), up = single * random.normal();
+    const double zenith = face == 1 ? seen.zenith : 2.0 * std::numbers::pi - seen.zenith;
+    stationing::Sighting s{.point = point, .face = face == 1 ? stationing::Face::one : stationing::Face::two};
+    s.direction = circle(seen.direction + turned + (sign * model.collimation + right) / std::sin(seen.zenith));
+    s.zenith = zenith + model.index_error + up;
+    s.distance = seen.distance;
+    station.sightings.push_back(std::move(s));
+  }
+}
+
+/// The coordinates that the user has: off the true places by their sigma, some by a movement since then.
+std::vector<stationing::ControlPoint> told_coordinates(const std::vector<stationing::ControlPoint>& points,
+                                                       const TotalStationModel& model, std::uint64_t seed,
+                                                       Truth& truth) {
+  std::vector<stationing::ControlPoint> told = points;
+  for (stationing::ControlPoint& p : told) {
+    RandomStream coordinates(seed, "total_station.point." + p.name);
+    p.position += model.sigma_point * coordinates.normal3();
+    p.covariance = Eigen::Matrix3d::Identity() * model.sigma_point * model.sigma_point;
+  }
+  RandomStream random(seed, "total_station.moved");
+  while (truth.moved_points.size() < std::min(told.size(), static_cast<std::size_t>(model.moved_points))) {
+    const auto i =
+        std::min(told.size() - 1, static_cast<std::size_t>(random.uniform() * static_cast<double>(told.size())));
+    if (std::count(truth.moved_points.begin(), truth.moved_points.end(), told[i].name) > 0) continue;
+    told[i].position += model.moved_by * random.normal3().normalized();
+    truth.moved_points.push_back(told[i].name);
+  }
+  return told;
 }
 }  // namespace
 
@@ -69,12 +109,7 @@ void observe_total_station(const World& world, const TotalStationModel& model, s
   const bool readings = model.output != TotalStationModel::Output::positions;
   RandomStream random(seed, "total_station"), sightings(seed, "total_station.readings");
   const auto points = readings ? true_control_points(world, model) : std::vector<stationing::ControlPoint>{};
-  recording.control_points = points;
-  for (stationing::ControlPoint& p : recording.control_points) {
-    RandomStream coordinates(seed, "total_station.point." + p.name);
-    p.position += model.sigma_point * coordinates.normal3();
-    p.covariance = Eigen::Matrix3d::Identity() * model.sigma_point * model.sigma_point;
-  }
+  recording.control_points = told_coordinates(points, model, seed, recording.truth);
   const Eigen::Matrix3d C_vs = geodesy::to_matrix(model.mounting);
   double last = 1e300;  // distance of the last stationing
   int number = 0;
@@ -112,7 +147,9 @@ void observe_total_station(const World& world, const TotalStationModel& model, s
       s.name = name;
       s.from = from, s.to = to;
       for (std::size_t i = 0; i < count; ++i) {
-        s.sightings.push_back(sight(C_ls.transpose() * (near[i]->position - place), near[i]->name, model, sightings));
+        const Seen seen = see(C_ls.transpose() * (near[i]->position - place), model, sightings);
+        read(seen, near[i]->name, model, sightings, s);
+        if (!seen.blunder.isZero()) recording.truth.wrong_sightings.push_back({name, near[i]->name, seen.blunder});
       }
       recording.stationings.push_back(std::move(s));
     }

@@ -4,6 +4,7 @@
 
 #include "versine/geodesy/ellipsoid.hpp"
 #include "versine/gnss/agreement.hpp"
+#include "versine/gnss/fixed_sigma.hpp"
 #include "versine/gnss/options.hpp"
 #include "versine/gnss/rinex_scan.hpp"
 
@@ -45,6 +46,18 @@ TEST(Agreement, DifferencesWithinTheirSigmasAreNot) {
   const auto a = compare_directions(series(10, FixType::fixed, {}), series(10, FixType::fixed, {0.01, 0, 0}, 0, 10),
                                     series(10, FixType::fixed, {}), {});
   EXPECT_EQ(a.doubted, 0u);
+}
+
+TEST(FixedSigma, NothingAndScatterAreRaisedToWhatIsUsual) {
+  auto s = series(100, FixType::fixed, {});
+  s.samples[50].sigma_ned.y() = 0.5e-4;
+  s.samples[60].sigma_ned.z() = 0.05;
+  s.samples[70].fix = FixType::float_ambiguity;
+  s.samples[70].sigma_ned.setConstant(1e-3);
+  const auto steady = with_steady_sigmas(s);
+  EXPECT_DOUBLE_EQ(steady[50].sigma_ned.y(), 0.005);
+  EXPECT_DOUBLE_EQ(steady[60].sigma_ned.z(), 0.05);
+  EXPECT_DOUBLE_EQ(steady[70].sigma_ned.y(), 1e-3);
 }
 
 TEST(Options, ConfigurationSaysWhatWasAsked) {

@@ -135,6 +135,25 @@ TEST(FreeStation, FindsPointsWithoutNumbersByTheirCoordinates) {
   EXPECT_THAT(u->warnings, ::testing::Contains(HasSubstr("'X9' is CP")));
 }
 
+// A prism that is in no list: told so, by number or without one, and the station stands as if it had not been read.
+TEST(FreeStation, UnknownPointIsNamedAndLeftOut) {
+  for (const char* number : {"X77", ""}) {
+    Case c = make_case(31, 6);
+    const auto without = solve(c);
+    std::mt19937 rng(31);
+    const ControlPoint stray{.name = "stray", .position = c.truth.position + Eigen::Vector3d(31.0, 12.0, -2.0)};
+    sight(c.readings, c.truth, stray, number, 1, true, {}, rng);
+    const auto r = solve(c);
+    ASSERT_TRUE(r && without) << r.error().message();
+    ASSERT_EQ(r->excluded.size(), 1u);
+    EXPECT_EQ(r->excluded[0].reason, Exclusion::Reason::unknown_point);
+    EXPECT_EQ(r->excluded[0].point, number);
+    EXPECT_EQ(r->targets.size(), 6u);
+    // The stray prism has told collimation and index error a little, nothing else.
+    EXPECT_LT((r->position - without->position).norm(), 0.05e-3);
+  }
+}
+
 TEST(FreeStation, MovedControlPointIsNamedAcrossStations) {
   std::mt19937 rng(7);
   auto nominal = pairs_along(600.0, rng);

@@ -65,7 +65,7 @@ inline void sight(Stationing& s, const Truth& truth, const ControlPoint& real, c
   const double d = v.norm(), r = std::atan2(v.y(), v.x());
   const double h = std::hypot(v.x(), v.y());
   const double z = std::atan2(h, -v.z()) - noise.refraction * d / (2.0 * 6.371e6) * h / d;
-  const double read = d + std::hypot(noise.distance, 1e-6 * noise.ppm * d) * normal(rng);
+  const double read = d + (noise.distance + 1e-6 * noise.ppm * d) * normal(rng);
   const double single = std::sqrt(2.0) * noise.angle;
   for (int set = 1; set <= sets; ++set) {
     Sighting one{.point = name,

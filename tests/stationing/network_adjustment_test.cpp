@@ -93,16 +93,58 @@ TEST(NetworkAdjustment, ATrajectoryJoinsWhatPointsDoNot) {
   std::vector<ControlPoint> one_end(s.nominal.begin(), s.nominal.begin() + 6);
   const auto control = *ControlNetwork::create(one_end);
   const auto alone = adjust_network(s.stations, control, Instrument{}, {});
-  std::vector<RelativePosition> relative;
-  for (std::size_t i = 1; i < s.stations.size(); ++i) {
-    relative.push_back({s.stations[0].name, s.stations[i].name, s.truth[i].position - s.truth[0].position,
-                        1e-6 * Eigen::Matrix3d::Identity()});
+  // Half a millimetre in itself, ten metres as a whole.
+  StationFigure figure;
+  const auto n = static_cast<Eigen::Index>(3 * s.stations.size());
+  figure.covariance = 0.25e-6 * Eigen::MatrixXd::Identity(n, n);
+  for (std::size_t i = 0; i < s.stations.size(); ++i) {
+    figure.stations.push_back(s.stations[i].name);
+    figure.positions.push_back(s.truth[i].position + Eigen::Vector3d(7.0, -3.0, 2.0));
+    for (std::size_t k = 0; k < s.stations.size(); ++k) {
+      figure.covariance.block<3, 3>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * k)) +=
+          100.0 * Eigen::Matrix3d::Identity();
+    }
   }
-  const auto joined = adjust_network(s.stations, control, Instrument{}, {}, relative);
+  const auto joined = adjust_network(s.stations, control, Instrument{}, {}, std::span(&figure, 1));
   ASSERT_TRUE(alone && joined);
   EXPECT_LT(joined->stations.back().covariance(1, 1), 0.5 * alone->stations.back().covariance(1, 1));
-  relative[0].to = "nowhere";
-  EXPECT_FALSE(adjust_network(s.stations, control, Instrument{}, {}, relative));
+  const Eigen::Vector3d e = joined->stations.back().position - s.truth.back().position;
+  EXPECT_LT(e.dot(joined->stations.back().covariance.topLeftCorner<3, 3>().llt().solve(e)), 16.3);
+  figure.stations[0] = "nowhere";
+  EXPECT_FALSE(adjust_network(s.stations, control, Instrument{}, {}, std::span(&figure, 1)));
+}
+
+// A control point that only one station sees: its own readings cannot tell a blunder from a movement of the point, the
+// figure of the stations tells that the station is where it should be.
+TEST(NetworkAdjustment, ATrajectoryTellsOfAPointThatHasMoved) {
+  std::size_t found = 0, found_alone = 0, wrong = 0;
+  for (unsigned seed = 0; seed < 10; ++seed) {
+    Survey s = make_survey(2000 + seed, {4e-3, 4e-3, -3e-3});
+    for (auto& station : s.stations) station.targets.resize(4);  // two pairs each: little redundancy
+    StationFigure figure;
+    std::mt19937 rng(seed);
+    std::normal_distribution<double> normal;
+    const auto n = static_cast<Eigen::Index>(3 * s.stations.size());
+    figure.covariance = 0.04e-6 * Eigen::MatrixXd::Identity(n, n);
+    for (std::size_t i = 0; i < s.stations.size(); ++i) {
+      figure.stations.push_back(s.stations[i].name);
+      figure.positions.push_back(s.truth[i].position + 0.2e-3 * Eigen::Vector3d(normal(rng), normal(rng), normal(rng)));
+      for (std::size_t k = 0; k < s.stations.size(); ++k) {
+        figure.covariance.block<3, 3>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * k)) +=
+            1e-2 * Eigen::Matrix3d::Identity();
+      }
+    }
+    const auto control = *ControlNetwork::create(s.nominal);
+    const auto alone = adjust_network(s.stations, control, Instrument{}, {});
+    const auto joined = adjust_network(s.stations, control, Instrument{}, {}, std::span(&figure, 1));
+    ASSERT_TRUE(alone && joined);
+    for (const auto& p : joined->points) p.moved ? (p.name == s.nominal[7].name ? ++found : ++wrong) : 0;
+    for (const auto& p : alone->points) found_alone += p.moved && p.name == s.nominal[7].name;
+  }
+  std::printf("moved point found in %zu of 10 with the trajectory, %zu without; %zu others\n", found, found_alone,
+              wrong);
+  EXPECT_GE(found, 9u);
+  EXPECT_LE(wrong, 1u);
 }
 
 TEST(NetworkAdjustment, RefusesANetworkThatFallsApart) {

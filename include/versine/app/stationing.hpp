@@ -30,7 +30,10 @@ struct StationingProcessing {
   TimeScale time_scale = TimeScale::gps;  ///< of the readings' times
   Arrangement arrangement = Arrangement::on_trolley;
   std::string prism = "PRISM";  ///< number of the trolley's prism, beside
-  bool attitude = true;         ///< hand the attitude over too, on_trolley
+  /// Roll, pitch, yaw of the instrument against the IMU, deg; given, the attitude is handed over too (on_trolley).
+  std::optional<Eigen::Vector3d> mounting;
+  bool check_control = false;   ///< of a survey: adjust stations, points and trajectory together
+  double mounting_sigma = 0.0;  ///< rad, each axis; the same error at every station
   stationing::Instrument instrument;
   stationing::FreeStationOptions options;
 };

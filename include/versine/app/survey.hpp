@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "versine/app/control_check.hpp"
 #include "versine/app/geometry.hpp"
 #include "versine/app/survey_config.hpp"
 #include "versine/app/survey_input.hpp"
@@ -19,6 +20,8 @@ struct SurveyResult {
   fusion::AidedInsResult estimate;
   std::optional<WithheldErrors> withheld;
   std::optional<GeometryResult> geometry;
+  std::optional<ControlCheck> control;
+  std::vector<std::string> warnings;  ///< of input and estimate, once written
   std::vector<std::pair<std::string, double>> timings_s;
 };
 

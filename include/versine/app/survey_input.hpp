@@ -19,6 +19,7 @@ struct SurveyInput {
   Series<sensors::SpeedSample> speed;
   Series<sensors::HeadingSample> heading;
   Series<sensors::LandmarkSample> landmarks;
+  std::optional<StationingOutcome> total_station;  ///< where the landmarks come from
   RunRecord record;
   std::vector<io::RunInput> files;
 };

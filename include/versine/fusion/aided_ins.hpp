@@ -107,8 +107,9 @@ struct AidedInsOptions {
   // --- gates and weights
   double gate_probability = 1e-5;  ///< chance that a good measurement is rejected
   RobustWeight robust = RobustWeight::none;
-  int most_rejections = 10;  ///< after so many in a row of one sensor the filter, not the sensor, is doubted
-  int monitor_length = 30;   ///< innovations of one sensor whose mean is watched for slow faults; 0: off
+  int most_rejections = 10;   ///< after so many in a row of one sensor the filter, not the sensor, is doubted,
+  double doubt_after = 60.0;  ///< s; of positions, if they have lasted this long: a wrong ambiguity lasts for seconds
+  int monitor_length = 30;    ///< innovations of one sensor whose mean is watched for slow faults; 0: off
 
   // --- numbers
   double covariance_rate = 10.0;       ///< Hz

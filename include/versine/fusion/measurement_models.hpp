@@ -36,6 +36,12 @@ namespace versine::fusion {
 [[nodiscard]] filter::Linearized landmark_attitude(const InsMoment& m, const InsLayout& layout,
                                                    const sensors::LandmarkSample& sample,
                                                    const Eigen::Quaterniond& q_bs);
+/// The same after the landmark's position went into the filter: less what that position has told of it already, so
+/// that both together count with their full covariance.
+[[nodiscard]] filter::Linearized landmark_attitude_after_position(const InsMoment& m, const InsLayout& layout,
+                                                                  const sensors::LandmarkSample& sample,
+                                                                  const Eigen::Vector3d& lever_b,
+                                                                  const Eigen::Quaterniond& q_bs);
 
 /// Velocity of the wheel point in the vehicle frame (Chen 2018 eq. 9), and its derivative with respect to all states.
 struct WheelVelocity {

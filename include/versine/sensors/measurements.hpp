@@ -67,6 +67,8 @@ struct LandmarkSample {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< n-frame, m^2
   std::optional<Eigen::Quaterniond> q_ns;                ///< attitude of the instrument s, when it was solved for
   Eigen::Matrix3d attitude_covariance = Eigen::Matrix3d::Zero();  ///< of the phi-angle in n, rad^2, with q_ns
+  /// Of the position's error (given minus true, n) with that phi-angle, m rad: both come from the same readings.
+  Eigen::Matrix3d position_attitude = Eigen::Matrix3d::Zero();
 };
 
 /// Heading from a dual antenna or from a known track azimuth, rad from north clockwise.

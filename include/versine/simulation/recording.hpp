@@ -36,6 +36,12 @@ struct Standstill {
   double distance = 0.0;  ///< m
 };
 
+/// A sighting of a total station with a blunder in it.
+struct WrongSighting {
+  std::string station, point;
+  Eigen::Vector3d error = Eigen::Vector3d::Zero();  ///< across, up and along the line, m
+};
+
 struct Truth {
   geodesy::Trajectory trajectory;  ///< of the IMU's reference point and axes; covariances zero
   std::vector<ProgressPoint> progress;
@@ -45,6 +51,8 @@ struct Truth {
   std::vector<std::pair<std::string, double>> constants;  ///< drawn errors by name ("gyro_bias_x"), SI and radians
   Series<sensors::ImuSample> bias;  ///< time-varying gyro (rad/s, as dtheta) and accelerometer (m/s^2) bias, 1/s
   std::vector<Eigen::Vector3d> gnss_error;  ///< of each epoch, north-east-down, m
+  std::vector<WrongSighting> wrong_sightings;
+  std::vector<std::string> moved_points;  ///< control points
 };
 
 struct AxleBoxRecording {

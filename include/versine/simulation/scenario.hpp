@@ -173,12 +173,16 @@ struct TotalStationModel {
   double point_side = 3.5, point_height = 1.0;  ///< beside the axis and above the rails, m
   double sigma_point = 0.3e-3;                  ///< of the points' coordinates, m
   int targets = 8;                              ///< sighted from one place
-  double sigma_angle = 2.42e-6;                 ///< direction and zenith angle, rad (0.5 arc-second)
+  int faces = 1;                                ///< in which each point is read
+  double collimation = 0.0, index_error = 0.0;  ///< of the instrument, rad; two faces cancel them
+  double sigma_angle = 2.42e-6;                 ///< direction and zenith angle, both faces once (ISO 17123-3), rad
   double sigma_distance = 0.6e-3;               ///< m
   double sigma_distance_ppm = 1e-6;             ///< of the distance
   double refraction = 0.13;                     ///< coefficient k of the light's bending
   double sighting_blunder = 0.0;                ///< probability for each sighting
   double sighting_blunder_size = 0.02;          ///< m across or along the line
+  int moved_points = 0;                         ///< control points that have moved since their survey
+  double moved_by = 0.005;                      ///< m, in any direction
 };
 
 /// Axle-box acceleration of a wheel at A1: roughness, joints and switches.

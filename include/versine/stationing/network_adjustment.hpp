@@ -12,11 +12,12 @@
 
 namespace versine::stationing {
 
-/// What joins two stations besides common points: the difference of their centres from a smoothed trajectory.
-struct RelativePosition {
-  std::string from, to;                                  ///< names of stations
-  Eigen::Vector3d difference = Eigen::Vector3d::Zero();  ///< to minus from, m-frame, m
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
+/// What joins stations besides common points: the figure of their centres as a smoothed trajectory has it. The
+/// covariance holds what their errors share, so that a figure may be precise in itself and hang loosely as a whole.
+struct StationFigure {
+  std::vector<std::string> stations;       ///< by name, each once
+  std::vector<Eigen::Vector3d> positions;  ///< of the instrument's centre, m-frame, m
+  Eigen::MatrixXd covariance;              ///< three rows a station, m^2; positive definite
 };
 
 struct NetworkOptions {
@@ -58,10 +59,10 @@ struct NetworkResult {
 /// Constrained: control points are observations with their covariance; one that fails its test is released, reported as
 /// moved and estimated. Free: the shape is the readings' alone, the datum that of least sum of squared offsets from the
 /// start values (inner constraints); sigma0 and the points' covariance do not depend on coordinates given.
-/// Fails when the network falls apart or when nothing is redundant.
+/// Fails when the network falls apart, when nothing is redundant, and on a figure of stations that are not in it.
 [[nodiscard]] Expected<NetworkResult> adjust_network(std::span<const ReducedStation> stations,
                                                      const ControlNetwork& control, const Instrument& instrument,
                                                      const NetworkOptions& options,
-                                                     std::span<const RelativePosition> relative = {});
+                                                     std::span<const StationFigure> figures = {});
 
 }  // namespace versine::stationing

@@ -18,6 +18,7 @@ struct Instrument {
   double target_sigma = 0.1 * units::mm;     ///< of the prism about its point, each direction, m
   double collimation = 0.0;                  ///< from a calibration, for targets without face II, rad
   double index_error = 0.0;                  ///< as before, of the vertical circle, rad
+  bool one_face = false;                     ///< face I alone is meant so: the instrument corrects both itself
   double scale_ppm = 0.0;                    ///< known error of the distance's scale
   double wavelength = 0.658;                 ///< of the distance meter, um
   Atmosphere reference_air;                  ///< that the instrument computes for

@@ -70,4 +70,17 @@ filter::Linearized landmark_attitude(const InsMoment& m, const InsLayout& layout
   return l;
 }
 
+filter::Linearized landmark_attitude_after_position(const InsMoment& m, const InsLayout& layout,
+                                                    const sensors::LandmarkSample& sample, const Vector3d& lever_b,
+                                                    const Eigen::Quaterniond& q_bs) {
+  filter::Linearized l = landmark_attitude(m, layout, sample, q_bs);
+  const filter::Linearized p = landmark_position(m, layout, sample, lever_b);
+  // The part of the attitude's noise that the position's does not share (Bryson and Ho, sequential processing).
+  const Matrix3d K = sample.covariance.llt().solve(sample.position_attitude).transpose();
+  l.z -= K * p.z;
+  l.H -= K * p.H;
+  l.R -= K * sample.position_attitude;
+  return l;
+}
+
 }  // namespace versine::fusion
