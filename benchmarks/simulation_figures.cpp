@@ -49,7 +49,7 @@ report::Figure allan_figure(const sensors::ImuGrade& grade, bool gyro) {
     floor.y.push_back(triad.bias_instability * std::sqrt(2.0 * std::numbers::ln2 / std::numbers::pi) / unit);
   }
   f.curves = {found, walk, floor};
-  f.width = 420, f.height = 300;
+  f.width = 111, f.height = 79;
   return f;
 }
 
@@ -83,7 +83,7 @@ report::Figure spectrum_figure(simulation::Spectrum spectrum, std::string_view n
     f.curves.push_back(asked);
     f.curves.push_back(found);
   }
-  f.width = 420, f.height = 320;
+  f.width = 111, f.height = 85;
   return f;
 }
 

@@ -36,6 +36,7 @@ void add_stationing(CLI::App& app, int& exit);
 void add_alignment(CLI::App& app, int& exit);
 void add_plan(CLI::App& app, int& exit);
 void add_view(CLI::App& app, int& exit);
+void add_report(CLI::App& app, int& exit);
 
 /// Options that every job command has.
 struct JobOptions {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "versine/app/progress_file.hpp"
+#include "versine/app/report.hpp"
 #include "versine/app/version.hpp"
 #include "versine/core/units.hpp"
 #include "versine/io/alignment_csv.hpp"
@@ -230,7 +231,7 @@ std::string geometry_summary_json(const GeometryResult& r) {
     out["quality"] = {
         {"limits", r.quality->profile}, {"source", r.quality->source}, {"speed_kmh", r.quality->speed / units::kmh},
         {"levels", r.quality->levels},  {"exceedances", levels},       {"unchecked", r.quality->unchecked}};
-    if (r.quality->tqi_limit > 0.0) out["quality"]["tqi_limit_mm"] = r.quality->tqi_limit;
+    if (r.quality->tqi_limit > 0.0) out["quality"]["tqi_limit_mm"] = r.quality->tqi_limit / units::mm;
     for (const track::Limit& limit : r.quality->applied) {
       const track::Column& c = g.at(limit.column);
       out["quality"]["limits_applied"].push_back({{"column", c.heading()},
@@ -287,6 +288,9 @@ void describe(ConfigVisitor& v, GeometryJobConfig& c) {
                                [](ConfigVisitor& t, OdometerFileConfig& f) { describe(t, f); });
   v.table(
       "geometry", "Track geometry.", [&](ConfigVisitor& t) { describe(t, c.geometry); }, &c.geometry.present);
+  v.table(
+      "report", "A report beside the result (docs/report.md); without this table none is made.",
+      [&](ConfigVisitor& t) { describe(t, c.report, true); }, &c.report.present);
   v.table("output", "Where to.", [&](ConfigVisitor& t) {
     t.value("folder", c.folder, {.doc = "Result folder; default: the job's name with .result, beside the job."});
   });
@@ -343,6 +347,9 @@ Expected<GeometryRun> run_geometry(const std::filesystem::path& job, std::span<c
   run.record = std::move(trajectory->record);
   run.record.append(result->geometry.record);
   if (auto done = io::write_run_json(folder->path("run.json"), run); !done) return tl::unexpected(done.error());
+  if (auto done = write_job_report(config.report, folder->folder(), folder->target()); !done) {
+    return tl::unexpected(done.error());
+  }
   if (auto done = folder->commit(); !done) return tl::unexpected(done.error());
   GeometryRun out{folder->target(), json::parse(run.results_json).dump(2), geometry_summary_text(*result)};
   if (result->quality && !result->quality->exceedances.empty()) {

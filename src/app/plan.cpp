@@ -7,6 +7,7 @@
 #include <chrono>
 #include <ctime>
 
+#include "versine/app/report.hpp"
 #include "versine/app/version.hpp"
 #include "versine/io/result_folder.hpp"
 #include "versine/io/run_json.hpp"
@@ -109,6 +110,9 @@ Expected<PlanRun> run_plan(const std::filesystem::path& job, std::span<const std
   run.results_json = plan_json(*config, *result);
   run.timings_s = {{"planning", result->planning_s}, {"Monte Carlo", result->monte_carlo_s}};
   if (auto done = io::write_run_json(folder->path("run.json"), run); !done) return tl::unexpected(done.error());
+  if (auto done = write_job_report(config->report, folder->folder(), folder->target()); !done) {
+    return tl::unexpected(done.error());
+  }
   if (auto done = folder->commit(); !done) return tl::unexpected(done.error());
   return PlanRun{folder->target(), run.results_json, plan_text(*config, *result), result->met};
 }

@@ -184,6 +184,9 @@ void describe(ConfigVisitor& v, PlanConfig& c) {
       });
   v.table("monte_carlo", "Simulated surveys through the real filters.",
           [&](ConfigVisitor& t) { describe_monte_carlo(t, c.monte_carlo); });
+  v.table(
+      "report", "A report beside the result (docs/report.md); without this table none is made.",
+      [&](ConfigVisitor& t) { describe(t, c.report, false); }, &c.report.present);
 }
 
 Expected<PlanConfig> read_plan_config(const std::filesystem::path& path, std::span<const std::string> overrides) {

@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <fstream>
 
 #include "versine/app/plan.hpp"
 #include "versine/core/units.hpp"
-#include "versine/report/figure.hpp"
+#include "versine/report/plan_report.hpp"
 
 namespace versine::app {
 
@@ -52,107 +52,77 @@ std::string monte_carlo_csv(const MonteCarloResult& m) {
   return csv;
 }
 
-enum class Direction { lateral, vertical, longitudinal };
-double along(const fusion::Directions& d, Direction direction) {
-  return direction == Direction::lateral ? d.lateral : direction == Direction::vertical ? d.vertical : d.longitudinal;
-}
+/// Figure 5 of Jiang: one interval by itself, by closed forms and by filter and smoother.
+struct Interval {
+  std::vector<fusion::ProfilePoint> closed, smoothed;
+};
 
-report::Curve curve(std::string name, const std::vector<fusion::ProfilePoint>& profile, Direction direction) {
-  report::Curve c{.name = std::move(name)};
-  for (const auto& p : profile) {
-    c.x.push_back(p.distance);
-    c.y.push_back(along(p.sigma, direction) / mm);
-  }
-  return c;
-}
-
-/// Figure 5 of Jiang: one interval, closed forms as lines, filter and smoother as points.
-report::Figure interval_figure(const PlanConfig& c) {
+Interval one_interval(const PlanConfig& c) {
   fusion::PlanCase one = c.plan;
   one.intervals = 1;
-  const auto chain = fusion::chain_accuracy(one, 0.0);
-  report::Figure f{
-      .title = "One interval by itself", .x = {.label = "distance, m"}, .y = {.label = "sigma, mm", .low = 0.0}};
-  const std::pair<const char*, Direction> rows[] = {
-      {"lateral", Direction::lateral}, {"vertical", Direction::vertical}, {"longitudinal", Direction::longitudinal}};
-  int colour = 0;
-  for (const auto& [name, direction] : rows) {
-    report::Curve closed{.name = fmt::format("{}, closed form", name), .colour = colour};
-    report::Curve smoothed{
-        .name = fmt::format("{}, filter and smoother", name), .style = report::CurveStyle::points, .colour = colour++};
-    for (std::size_t k = 0; k < chain.profile.size(); ++k) {
-      const auto& p = chain.profile[k];
-      closed.x.push_back(p.distance);
-      closed.y.push_back(along(fusion::closed_form_sigma(one, p.distance), direction) / mm);
-      if (k % 4 != 0) continue;
-      smoothed.x.push_back(p.distance);
-      smoothed.y.push_back(along(p.sigma, direction) / mm);
+  Interval out{{}, fusion::chain_accuracy(one, 0.0).profile};
+  for (const auto& p : out.smoothed) out.closed.push_back({p.distance, fusion::closed_form_sigma(one, p.distance)});
+  return out;
+}
+
+std::string interval_csv(const Interval& interval) {
+  std::string csv =
+      "distance_m,lateral_sigma_mm,vertical_sigma_mm,longitudinal_sigma_mm,closed_lateral_sigma_mm,"
+      "closed_vertical_sigma_mm,closed_longitudinal_sigma_mm\n";
+  for (std::size_t i = 0; i < interval.smoothed.size(); ++i) {
+    const auto &s = interval.smoothed[i].sigma, &k = interval.closed[i].sigma;
+    csv +=
+        fmt::format("{:.3f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f}\n", interval.smoothed[i].distance, s.lateral / mm,
+                    s.vertical / mm, s.longitudinal / mm, k.lateral / mm, k.vertical / mm, k.longitudinal / mm);
+  }
+  return csv;
+}
+
+report::PlanProfile profile_of(const std::vector<fusion::ProfilePoint>& profile, std::string name = {}) {
+  report::PlanProfile out{.name = std::move(name)};
+  for (const auto& p : profile) {
+    out.distance.push_back(p.distance);
+    out.sigma[0].push_back(p.sigma.lateral / mm);
+    out.sigma[1].push_back(p.sigma.vertical / mm);
+    out.sigma[2].push_back(p.sigma.longitudinal / mm);
+  }
+  return out;
+}
+
+report::PlanMap map_of(const fusion::SigmaMap& map, double x_unit, double y_unit) {
+  report::PlanMap out;
+  for (const double x : map.x) out.x.push_back(x / x_unit);
+  for (const double y : map.y) out.y.push_back(y / y_unit);
+  for (const double s : map.sigma) out.sigma.push_back(s / mm);
+  return out;
+}
+
+std::array<double, 3> three(const fusion::Directions& d, double unit) {
+  return {d.lateral / unit, d.vertical / unit, d.longitudinal / unit};
+}
+
+/// What the figures show.
+report::PlanReport figures_of(const PlanConfig& c, const PlanResult& r) {
+  report::PlanReport out;
+  const Interval interval = one_interval(c);
+  out.required_mm = c.required / mm;
+  out.closed = profile_of(interval.closed);
+  out.smoothed = profile_of(interval.smoothed);
+  out.run = profile_of(r.chain.profile);
+  out.lateral = map_of(r.lateral, deg_per_hour, deg_per_sqrt_hour);
+  out.vertical = map_of(r.vertical, deg_per_hour, deg_per_sqrt_hour);
+  out.longitudinal = map_of(r.longitudinal, ppm, ppm);
+  for (const auto& m : r.methods) out.methods.push_back(profile_of(m.profile, to_string(m.method)));
+  if (r.monte_carlo) {
+    const std::vector<double>* errors[] = {&r.monte_carlo->lateral, &r.monte_carlo->vertical,
+                                           &r.monte_carlo->longitudinal};
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (const double e : *errors[k]) out.errors[k].push_back(e / mm);
     }
-    f.curves.push_back(std::move(closed));
-    f.curves.push_back(std::move(smoothed));
+    out.rms = three(r.monte_carlo->rms, mm);
+    out.predicted = three(r.monte_carlo->predicted, mm);
   }
-  return f;
-}
-
-report::Figure run_figure(const PlanConfig& c, const PlanResult& r) {
-  report::Figure f{.title = "Chained run", .x = {.label = "distance, m"}, .y = {.label = "sigma, mm", .low = 0.0}};
-  f.curves = {curve("lateral", r.chain.profile, Direction::lateral),
-              curve("vertical", r.chain.profile, Direction::vertical),
-              curve("longitudinal", r.chain.profile, Direction::longitudinal)};
-  f.curves.push_back({.name = "required",
-                      .x = {0.0, r.chain.profile.back().distance},
-                      .y = {c.required / mm, c.required / mm},
-                      .style = report::CurveStyle::dashed,
-                      .colour = 6});
-  return f;
-}
-
-/// Figure 6 of Jiang.
-report::Figure map_figure(const fusion::SigmaMap& map, const char* title, const char* x_label, const char* y_label,
-                          double x_unit, double y_unit, double required) {
-  report::Figure f{.title = title, .x = {.label = x_label}, .y = {.label = y_label}};
-  report::Field field{.emphasis = required / mm, .label = fmt::format("{:.2f} mm required", required / mm)};
-  for (const double x : map.x) field.x.push_back(x / x_unit);
-  for (const double y : map.y) field.y.push_back(y / y_unit);
-  for (const double s : map.sigma) field.value.push_back(s / mm);
-  const auto [low, high] = std::minmax_element(field.value.begin(), field.value.end());
-  field.contours = report::ticks(*low, *high, 7);
-  f.field = std::move(field);
-  return f;
-}
-
-/// Figure 7 of Jiang: errors of the runs against the normal distribution predicted.
-report::Figure histogram(const std::vector<double>& errors, double rms, double predicted, const char* title) {
-  const double width = 0.25 * std::max(rms, 1e-9), limit = 4.0 * std::max(rms, predicted);
-  const int half = std::max(1, static_cast<int>(limit / width));
-  std::vector<double> counts(static_cast<std::size_t>(2 * half + 1), 0.0);
-  for (const double e : errors) {
-    const auto bin = std::lround(e / width) + half;
-    if (bin >= 0 && bin < static_cast<long>(counts.size())) ++counts[static_cast<std::size_t>(bin)];
-  }
-  report::Figure f{.title = fmt::format("{}: RMS {:.2f} mm, predicted {:.2f} mm", title, rms / mm, predicted / mm),
-                   .x = {.label = "error, mm"},
-                   .y = {.label = "runs"}};
-  report::Curve bars{.name = "runs", .style = report::CurveStyle::bars}, normal{.name = "predicted"};
-  const double n = static_cast<double>(errors.size());
-  for (int k = -half; k <= half; ++k) {
-    bars.x.push_back(k * width / mm);
-    bars.y.push_back(counts[static_cast<std::size_t>(k + half)]);
-  }
-  for (double e = -limit; e <= limit; e += 0.1 * width) {
-    normal.x.push_back(e / mm);
-    normal.y.push_back(n * width / predicted * std::exp(-0.5 * e * e / (predicted * predicted)) /
-                       std::sqrt(2 * std::acos(-1.0)));
-  }
-  f.curves = {std::move(bars), std::move(normal)};
-  return f;
-}
-
-/// Figure 8 of Jiang.
-report::Figure method_figure(const PlanResult& r, Direction direction, const char* title) {
-  report::Figure f{.title = title, .x = {.label = "distance, m"}, .y = {.label = "sigma, mm", .logarithmic = true}};
-  for (const auto& m : r.methods) f.curves.push_back(curve(to_string(m.method), m.profile, direction));
-  return f;
+  return out;
 }
 
 }  // namespace
@@ -161,6 +131,7 @@ Expected<void> write_plan_tables(const std::filesystem::path& folder, const Plan
   const double bias = deg_per_hour, walk = deg_per_sqrt_hour;
   std::vector<std::pair<std::string, std::string>> files{
       {"plan.txt", plan_text(c, r)},
+      {"interval.csv", interval_csv(one_interval(c))},
       {"profile.csv", profile_csv(r.chain.profile)},
       {"map_lateral.csv", map_csv(r.lateral, "gyro_bias_deg_per_h,random_walk_deg_per_sqrt_h", bias, walk)},
       {"map_vertical.csv", map_csv(r.vertical, "gyro_bias_deg_per_h,random_walk_deg_per_sqrt_h", bias, walk)},
@@ -183,33 +154,16 @@ Expected<void> write_plan_tables(const std::filesystem::path& folder, const Plan
 }
 
 Expected<void> write_plan_figures(const std::filesystem::path& folder, const PlanConfig& c, const PlanResult& r) {
-  std::vector<std::pair<std::string, std::string>> files;
-  const report::Figure sigma[] = {interval_figure(c), run_figure(c, r)};
-  files.emplace_back("sigma.svg", report::to_svg(sigma, 2));
-  const report::Figure maps[] = {
-      map_figure(r.lateral, "Lateral sigma at mid-interval, mm", "gyro bias, deg/h", "random walk, deg/sqrt(h)",
-                 deg_per_hour, deg_per_sqrt_hour, c.required),
-      map_figure(r.vertical, "Vertical sigma at mid-interval, mm", "gyro bias, deg/h", "random walk, deg/sqrt(h)",
-                 deg_per_hour, deg_per_sqrt_hour, c.required),
-      map_figure(r.longitudinal, "Longitudinal sigma at mid-interval, mm", "odometer scale, ppm",
-                 "its random walk, ppm/sqrt(s)", ppm, ppm, c.required)};
-  files.emplace_back("maps.svg", report::to_svg(maps, 2));
-  if (!r.methods.empty()) {
-    const report::Figure methods[] = {method_figure(r, Direction::lateral, "Lateral"),
-                                      method_figure(r, Direction::vertical, "Vertical"),
-                                      method_figure(r, Direction::longitudinal, "Longitudinal")};
-    files.emplace_back("methods.svg", report::to_svg(methods, 2));
-  }
-  if (r.monte_carlo) {
-    const auto& m = *r.monte_carlo;
-    const report::Figure histograms[] = {
-        histogram(m.lateral, m.rms.lateral, m.predicted.lateral, "Lateral"),
-        histogram(m.vertical, m.rms.vertical, m.predicted.vertical, "Vertical"),
-        histogram(m.longitudinal, m.rms.longitudinal, m.predicted.longitudinal, "Longitudinal")};
-    files.emplace_back("monte_carlo.svg", report::to_svg(histograms, 2));
-  }
-  for (const auto& [name, text] : files) {
-    if (auto done = write_text(folder / name, text); !done) return done;
+  const report::PlanReport shown = figures_of(c, r);
+  const report::Texts texts;
+  const std::pair<const char*, std::vector<report::Figure>> files[] = {
+      {"sigma.svg", report::plan_sigma_figures(shown, texts)},
+      {"maps.svg", report::plan_map_figures(shown, texts)},
+      {"methods.svg", report::plan_method_figures(shown, texts)},
+      {"monte_carlo.svg", report::plan_histograms(shown, texts)}};
+  for (const auto& [name, figures] : files) {
+    if (figures.empty()) continue;
+    if (auto done = write_text(folder / name, report::to_svg(figures, 2)); !done) return done;
   }
   return {};
 }

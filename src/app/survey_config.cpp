@@ -279,6 +279,9 @@ void describe(ConfigVisitor& v, SurveyConfig& c) {
   v.table(
       "geometry", "Track geometry from the trajectory (docs/track-geometry.md); without this table there is none.",
       [&](ConfigVisitor& t) { describe(t, c.geometry); }, &c.geometry.present);
+  v.table(
+      "report", "A report beside the result (docs/report.md); without this table none is made.",
+      [&](ConfigVisitor& t) { describe(t, c.report, true); }, &c.report.present);
   v.table("output", "What is written, and where.", [&](ConfigVisitor& t) { describe_output(t, c); });
 }
 

@@ -10,6 +10,7 @@
 
 #include "network_report.hpp"
 #include "versine/app/landmark_residuals.hpp"
+#include "versine/app/report.hpp"
 #include "versine/app/version.hpp"
 #include "versine/core/units.hpp"
 #include "versine/io/write_trajectory.hpp"
@@ -214,6 +215,9 @@ Expected<SurveyRun> write_survey(const SurveyConfig& config, SurveyResult& resul
   run.results_json = summary.dump();
   run.record = std::move(record);
   if (auto done = io::write_run_json(folder.path("run.json"), run); !done) return tl::unexpected(done.error());
+  if (auto done = write_job_report(config.report, folder.folder(), folder.target()); !done) {
+    return tl::unexpected(done.error());
+  }
   if (auto done = folder.commit(); !done) return tl::unexpected(done.error());
   progress.report("writing", 1.0);
   return SurveyRun{folder.target(), summary.dump(2), text_of(result, summary)};

@@ -8,38 +8,18 @@
 #include <cmath>
 #include <limits>
 
+#include "versine/report/svg.hpp"
+
 namespace versine::report {
 
 namespace {
 
 /// Okabe and Ito's palette: told apart by colour-blind readers too.
-constexpr std::array palette{"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"};
-constexpr int left = 64, right = 16, top = 34, bottom = 48;
+constexpr std::array<std::uint32_t, 7> palette{0x0072B2, 0xD55E00, 0x009E73, 0xCC79A7, 0xE69F00, 0x56B4E9, 0x000000};
+constexpr double left = 17.0, right = 4.5, top = 9.0, bottom = 12.5, legend_row = 4.6;  // mm
+constexpr std::uint32_t ink = 0x333333, grid = 0xdddddd;
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
-/// Values to pixels along one axis.
+/// Values to millimetres along one axis.
 struct Scale {
   double low = 0.0, high = 1.0, from = 0.0, to = 1.0;
   bool logarithmic = false;
@@ -92,198 +72,128 @@ std::string number(double x) {
   return fmt::format("{:.6g}", std::abs(x) < 1e-12 ? 0.0 : x);
 }
 
-void draw_axes(std::string& svg, const Figure& f, const Scale& x, const Scale& y, int axis_bottom) {
-  svg += "<g stroke=\"#ddd\" stroke-width=\"1\">";
-  for (const double t : axis_ticks(x, 7)) {
-    svg += fmt::format("<path d=\"M{:.1f} {:.1f}V{:.1f}\"/>", x(t), y.from, y.to);
-  }
-  for (const double t : axis_ticks(y, 6)) {
-    svg += fmt::format("<path d=\"M{:.1f} {:.1f}H{:.1f}\"/>", x.from, y(t), x.to);
-  }
-  svg += "</g><g font-size=\"11\" fill=\"#333\">";
-  for (const double t : axis_ticks(x, 7)) {
-    svg +=
-        fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>", x(t), y.from + 15, number(t));
-  }
-  for (const double t : axis_ticks(y, 6)) {
-    svg +=
-        fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", x.from - 6, y(t) + 4, number(t));
-  }
-  svg += fmt::format(
-      "</g><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" stroke=\"#333\"/>", x.from,
-      y.to, x.to - x.from, y.from - y.to);
-  svg += fmt::format("<text x=\"{}\" y=\"20\" font-size=\"13\" font-weight=\"bold\" text-anchor=\"middle\">{}</text>",
-                     f.width / 2, escaped(f.title));
-  svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" font-size=\"12\" text-anchor=\"middle\">{}</text>",
-                     0.5 * (x.from + x.to), axis_bottom - 12, escaped(f.x.label));
-  svg += fmt::format(
-      "<text transform=\"translate(15 {:.1f}) rotate(-90)\" font-size=\"12\" text-anchor=\"middle\">{}</text>",
-      0.5 * (y.from + y.to), escaped(f.y.label));
+void draw_axes(Drawing& d, const Box& box, const Figure& f, const Scale& x, const Scale& y, double axis_bottom) {
+  const auto xs = axis_ticks(x, 7), ys = axis_ticks(y, 6);
+  for (const double t : xs) d.line({x(t), y.from}, {x(t), y.to}, {grid, 0.2, Dash::solid});
+  for (const double t : ys) d.line({x.from, y(t)}, {x.to, y(t)}, {grid, 0.2, Dash::solid});
+  for (const double t : xs) d.text({x(t), y.from + 4.0}, number(t), {.size = 2.9, .anchor = Anchor::middle});
+  for (const double t : ys) d.text({x.from - 1.5, y(t) + 1.0}, number(t), {.size = 2.9, .anchor = Anchor::end});
+  d.rectangle({x.from, y.to, x.to - x.from, y.from - y.to}, {}, Pen{ink, 0.25, Dash::solid});
+  d.text({box.x + 0.5 * box.width, box.y + 5.3}, f.title, {.size = 3.4, .anchor = Anchor::middle, .bold = true});
+  d.text({0.5 * (x.from + x.to), axis_bottom - 3.2}, f.x.label, {.size = 3.1, .anchor = Anchor::middle});
+  d.text({box.x + 4.0, 0.5 * (y.from + y.to)}, f.y.label, {.size = 3.1, .anchor = Anchor::middle, .upright = false});
 }
 
 /// White over yellow and orange to red, the share of the range from 0 to 1.
-std::string heat(double u) {
+std::uint32_t heat(double u) {
   u = std::clamp(u, 0.0, 1.0);
-  return fmt::format("rgb({:.0f},{:.0f},{:.0f})", 255 - 55 * u * u, 250 - 170 * u, 225 - 175 * std::sqrt(u));
+  const auto part = [](double v) { return static_cast<std::uint32_t>(std::lround(std::clamp(v, 0.0, 255.0))); };
+  return part(255 - 55 * u * u) << 16 | part(250 - 170 * u) << 8 | part(225 - 175 * std::sqrt(u));
 }
 
-void draw_field(std::string& svg, const Field& f, const Scale& x, const Scale& y) {
+void draw_level(Drawing& d, const Field& f, double level, Pen pen, const Scale& x, const Scale& y) {
+  Path path{.pen = pen};
+  Point label;
+  for (const Segment& s : contour(f, level)) {
+    const Point a{x(s.x1), y(s.y1)}, b{x(s.x2), y(s.y2)};
+    path.points.insert(path.points.end(), {a, b, pen_up});
+    if (a.x > label.x) label = a;
+  }
+  if (path.points.empty()) return;
+  d.items.emplace_back(std::move(path));
+  d.text({label.x - 0.5, label.y - 0.8}, number(level), {.size = 2.6, .anchor = Anchor::end});
+}
+
+void draw_field(Drawing& d, const Field& f, const Scale& x, const Scale& y) {
   const auto [low, high] = std::minmax_element(f.value.begin(), f.value.end());
   const double range = *high > *low ? *high - *low : 1.0;
-  svg += "<g shape-rendering=\"crispEdges\">";
+  const std::size_t nx = f.x.size();
   for (std::size_t j = 0; j + 1 < f.y.size(); ++j) {
-    for (std::size_t i = 0; i + 1 < f.x.size(); ++i) {
-      const double v = 0.25 * (f.value[j * f.x.size() + i] + f.value[j * f.x.size() + i + 1] +
-                               f.value[(j + 1) * f.x.size() + i] + f.value[(j + 1) * f.x.size() + i + 1]);
-      svg += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>", x(f.x[i]),
-                         y(f.y[j + 1]), x(f.x[i + 1]) - x(f.x[i]) + 0.1, y(f.y[j]) - y(f.y[j + 1]) + 0.1,
-                         heat((v - *low) / range));
+    for (std::size_t i = 0; i + 1 < nx; ++i) {
+      const double v = 0.25 * (f.value[j * nx + i] + f.value[j * nx + i + 1] + f.value[(j + 1) * nx + i] +
+                               f.value[(j + 1) * nx + i + 1]);
+      // A little wider than the cell: no hairlines between neighbours.
+      d.rectangle({x(f.x[i]), y(f.y[j + 1]), x(f.x[i + 1]) - x(f.x[i]) + 0.03, y(f.y[j]) - y(f.y[j + 1]) + 0.03},
+                  Fill{heat((v - *low) / range)});
     }
   }
-  svg += "</g>";
-  const auto draw = [&](double level, const char* style) {
-    std::string path;
-    double label_x = 0.0, label_y = 0.0;
-    for (const Segment& s : contour(f, level)) {
-      path += fmt::format("M{:.1f} {:.1f}L{:.1f} {:.1f}", x(s.x1), y(s.y1), x(s.x2), y(s.y2));
-      if (x(s.x1) > label_x) label_x = x(s.x1), label_y = y(s.y1);
-    }
-    if (path.empty()) return;
-    svg += fmt::format("<path d=\"{}\" fill=\"none\" {}/>", path, style);
-    svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" font-size=\"10\" text-anchor=\"end\">{}</text>", label_x - 2,
-                       label_y - 3, number(level));
-  };
-  for (const double level : f.contours) draw(level, "stroke=\"#555\" stroke-width=\"0.8\"");
-  if (f.emphasis) draw(*f.emphasis, "stroke=\"#000\" stroke-width=\"2.2\"");
+  for (const double level : f.contours) draw_level(d, f, level, {0x555555, 0.2, Dash::solid}, x, y);
+  if (f.emphasis) draw_level(d, f, *f.emphasis, {0x000000, 0.6, Dash::solid}, x, y);
 }
 
-const char* colour_of(const Curve& c, std::size_t index) {
+std::uint32_t colour_of(const Curve& c, std::size_t index) {
   const std::size_t k = c.colour >= 0 ? static_cast<std::size_t>(c.colour) : index;
   return palette[k % palette.size()];
 }
 
-void draw_curve(std::string& svg, const Curve& c, const char* colour, const Scale& x, const Scale& y) {
+void draw_curve(Drawing& d, const Curve& c, std::uint32_t colour, const Scale& x, const Scale& y) {
   const std::size_t n = std::min(c.x.size(), c.y.size());
   if (c.style == CurveStyle::points) {
-    svg += fmt::format("<g fill=\"{}\">", colour);
     for (std::size_t i = 0; i < n; ++i) {
-      if (std::isfinite(c.y[i]))
-        svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.5\"/>", x(c.x[i]), y(c.y[i]));
+      if (std::isfinite(c.y[i])) d.circle({x(c.x[i]), y(c.y[i])}, 0.7, Fill{colour});
     }
-    svg += "</g>";
     return;
   }
   if (c.style == CurveStyle::bars) {
-    const double width = n > 1 ? 0.9 * std::abs(x(c.x[1]) - x(c.x[0])) : 10.0;
-    svg += fmt::format("<g fill=\"{}\" fill-opacity=\"0.55\">", colour);
+    const double width = n > 1 ? 0.9 * std::abs(x(c.x[1]) - x(c.x[0])) : 3.0;
     for (std::size_t i = 0; i < n; ++i) {
-      svg += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>",
-                         x(c.x[i]) - 0.5 * width, y(c.y[i]), width, std::max(0.0, y.from - y(c.y[i])));
+      const double height = y.from - y(c.y[i]);
+      if (height > 0.0) d.rectangle({x(c.x[i]) - 0.5 * width, y(c.y[i]), width, height}, Fill{colour, 0.55});
     }
-    svg += "</g>";
     return;
   }
-  std::string path;
-  bool pen_down = false;
+  std::vector<Point> points;
   for (std::size_t i = 0; i < n; ++i) {
     const bool drawable = std::isfinite(c.y[i]) && (!y.logarithmic || c.y[i] > 0.0) && (!x.logarithmic || c.x[i] > 0.0);
-    if (drawable) path += fmt::format("{}{:.1f} {:.1f}", pen_down ? 'L' : 'M', x(c.x[i]), y(c.y[i]));
-    pen_down = drawable;
+    points.push_back(drawable ? Point{x(c.x[i]), y(c.y[i])} : pen_up);
   }
-  svg += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\"{}/>", path, colour,
-                     c.style == CurveStyle::dashed ? " stroke-dasharray=\"6 4\"" : "");
+  d.polyline(std::move(points), {colour, 0.45, c.style == CurveStyle::dashed ? Dash::dashed : Dash::solid});
 }
 
 struct LegendEntry {
-  std::string name, mark;  ///< mark: SVG drawn at the origin, 22 px wide
+  std::string name;
+  CurveStyle style = CurveStyle::line;
+  std::uint32_t colour = 0;
+  double x = 0.0;  ///< mm
+  int row = 0;
 };
 
-std::vector<LegendEntry> legend(const Figure& f) {
+void draw_sample(Drawing& d, Point at, const LegendEntry& e) {
+  switch (e.style) {
+    case CurveStyle::points:
+      d.circle({at.x + 2.9, at.y}, 0.7, Fill{e.colour});
+      break;
+    case CurveStyle::bars:
+      d.rectangle({at.x, at.y - 1.3, 5.8, 2.6}, Fill{e.colour, 0.55});
+      break;
+    case CurveStyle::line:
+    case CurveStyle::dashed:
+      d.line(at, {at.x + 5.8, at.y}, {e.colour, 0.5, e.style == CurveStyle::dashed ? Dash::dashed : Dash::solid});
+  }
+}
+
+/// Entries in rows below the plot; the second is the number of rows.
+std::pair<std::vector<LegendEntry>, int> legend(const Figure& f, double width) {
   std::vector<LegendEntry> entries;
   for (std::size_t i = 0; i < f.curves.size(); ++i) {
     const Curve& c = f.curves[i];
-    if (c.name.empty()) continue;
-    const char* colour = colour_of(c, i);
-    switch (c.style) {
-      case CurveStyle::points:
-        entries.push_back({c.name, fmt::format("<circle cx=\"11\" r=\"2.5\" fill=\"{}\"/>", colour)});
-        break;
-      case CurveStyle::bars:
-        entries.push_back(
-            {c.name,
-             fmt::format("<rect y=\"-5\" width=\"22\" height=\"10\" fill=\"{}\" fill-opacity=\"0.55\"/>", colour)});
-        break;
-      case CurveStyle::line:
-      case CurveStyle::dashed:
-        entries.push_back({c.name, fmt::format("<path d=\"M0 0h22\" stroke=\"{}\" stroke-width=\"2\"{}/>", colour,
-                                               c.style == CurveStyle::dashed ? " stroke-dasharray=\"6 4\"" : "")});
-    }
+    if (!c.name.empty()) entries.push_back({c.name, c.style, colour_of(c, i)});
   }
-  if (f.field && f.field->emphasis && !f.field->label.empty()) {
-    entries.push_back({f.field->label, "<path d=\"M0 0h22\" stroke=\"#000\" stroke-width=\"2.2\"/>"});
-  }
-  return entries;
-}
-
-/// Where each entry of the legend lies below the plot, in rows; the last pair is the number of rows.
-std::vector<std::pair<double, int>> legend_places(const std::vector<LegendEntry>& entries, double width) {
-  std::vector<std::pair<double, int>> places;
+  if (f.field && f.field->emphasis && !f.field->label.empty()) entries.push_back({f.field->label});
   double x = 0.0;
   int row = 0;
-  for (const auto& e : entries) {
-    const double needed = 42.0 + 6.2 * static_cast<double>(e.name.size());
+  for (LegendEntry& e : entries) {
+    const double needed = 11.0 + text_width(e.name, 2.9);
     if (x > 0.0 && x + needed > width) {
       x = 0.0;
       ++row;
     }
-    places.emplace_back(x, row);
+    e.x = x;
+    e.row = row;
     x += needed;
   }
-  places.emplace_back(0.0, entries.empty() ? 0 : row + 1);
-  return places;
-}
-
-constexpr int legend_row = 17;  // px
-
-std::string body(const Figure& f) {
-  Extent ex, ey;
-  bool from_zero = false;
-  for (const auto& c : f.curves) {
-    ex.add(c.x, f.x.logarithmic);
-    ey.add(c.y, f.y.logarithmic);
-    from_zero |= c.style == CurveStyle::bars;
-  }
-  if (f.field) {
-    ex.add(f.field->x, f.x.logarithmic);
-    ey.add(f.field->y, f.y.logarithmic);
-  }
-  Axis ax = f.x;
-  if (std::isfinite(ex.low)) {  // the data fill the width
-    ax.low = ax.low.value_or(ex.low);
-    ax.high = ax.high.value_or(ex.high);
-  }
-  const Scale x = make_scale(ax, ex, left, f.width - right, false);
-  const auto entries = legend(f);
-  const auto places = legend_places(entries, x.to - x.from);
-  const int axis_bottom = f.height - legend_row * places.back().second;
-  const Scale y = make_scale(f.y, ey, axis_bottom - bottom, top, from_zero);
-  std::string svg = "<g font-family=\"sans-serif\">";
-  if (f.field) draw_field(svg, *f.field, x, y);
-  draw_axes(svg, f, x, y, axis_bottom);
-  for (std::size_t i = 0; i < f.curves.size(); ++i) draw_curve(svg, f.curves[i], colour_of(f.curves[i], i), x, y);
-  for (std::size_t i = 0; i < entries.size(); ++i) {
-    svg += fmt::format("<g transform=\"translate({:.1f} {})\">{}<text x=\"28\" y=\"4\" font-size=\"11\">{}</text></g>",
-                       x.from + places[i].first, axis_bottom + legend_row * places[i].second + 2, entries[i].mark,
-                       escaped(entries[i].name));
-  }
-  return svg + "</g>";
-}
-
-std::string document(int width, int height, const std::string& content) {
-  return fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\">"
-      "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>{2}</svg>\n",
-      width, height, content);
+  const int rows = entries.empty() ? 0 : row + 1;
+  return {std::move(entries), rows};
 }
 
 }  // namespace
@@ -324,25 +234,64 @@ std::vector<Segment> contour(const Field& f, double level) {
   return segments;
 }
 
+void draw(Drawing& d, const Box& box, const Figure& f) {
+  Extent ex, ey;
+  bool from_zero = false;
+  for (const auto& c : f.curves) {
+    ex.add(c.x, f.x.logarithmic);
+    ey.add(c.y, f.y.logarithmic);
+    from_zero |= c.style == CurveStyle::bars;
+  }
+  if (f.field) {
+    ex.add(f.field->x, f.x.logarithmic);
+    ey.add(f.field->y, f.y.logarithmic);
+  }
+  Axis ax = f.x;
+  if (std::isfinite(ex.low)) {  // the data fill the width
+    ax.low = ax.low.value_or(ex.low);
+    ax.high = ax.high.value_or(ex.high);
+  }
+  const Scale x = make_scale(ax, ex, box.x + left, box.right() - right, false);
+  const auto [entries, rows] = legend(f, x.to - x.from);
+  const double axis_bottom = box.bottom() - legend_row * rows;
+  const Scale y = make_scale(f.y, ey, axis_bottom - bottom, box.y + top, from_zero);
+  d.begin(Group{"img", f.title, {}});
+  if (f.field) draw_field(d, *f.field, x, y);
+  draw_axes(d, box, f, x, y, axis_bottom);
+  d.begin(Clip{{x.from, y.to, x.to - x.from, y.from - y.to}});
+  for (std::size_t i = 0; i < f.curves.size(); ++i) draw_curve(d, f.curves[i], colour_of(f.curves[i], i), x, y);
+  d.end();
+  for (const LegendEntry& e : entries) {
+    const Point at{x.from + e.x, axis_bottom + legend_row * e.row + 0.5};
+    draw_sample(d, at, e);
+    d.text({at.x + 7.4, at.y + 1.0}, e.name, {.size = 2.9});
+  }
+  d.end();
+}
+
 std::string to_svg(const Figure& figure) {
-  return document(figure.width, figure.height, body(figure));
+  return to_svg(std::span(&figure, 1), 1);
 }
 
 std::string to_svg(std::span<const Figure> panels, int columns) {
-  std::string content;
-  int x = 0, y = 0, row_height = 0, width = 0, in_row = 0;
+  Drawing d{.width = 0.0, .height = 0.0};
+  Box box;
+  int in_row = 0;
   for (const Figure& f : panels) {
     if (in_row == columns) {
-      y += row_height;
-      x = row_height = in_row = 0;
+      box.x = 0.0;
+      box.y = d.height;
+      in_row = 0;
     }
-    content += fmt::format("<g transform=\"translate({} {})\">{}</g>", x, y, body(f));
-    x += f.width;
-    width = std::max(width, x);
-    row_height = std::max(row_height, f.height);
+    box.width = f.width;
+    box.height = f.height;
+    draw(d, box, f);
+    box.x += f.width;
+    d.width = std::max(d.width, box.x);
+    d.height = std::max(d.height, box.bottom());
     ++in_row;
   }
-  return document(width, y + row_height, content);
+  return to_svg(d, true);
 }
 
 }  // namespace versine::report

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "versine/app/geometry_config.hpp"
+#include "versine/app/report_config.hpp"
 #include "versine/filter/error_chain.hpp"
 #include "versine/io/result_folder.hpp"
 #include "versine/io/run_json.hpp"
@@ -56,6 +57,7 @@ struct GeometryJobConfig {
   TrajectoryFileConfig trajectory;
   std::vector<OdometerFileConfig> odometers;
   GeometryConfig geometry;
+  ReportConfig report;
   std::string folder;
 };
 void describe(ConfigVisitor& v, GeometryJobConfig& c);

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "versine/app/config.hpp"
+#include "versine/app/report_config.hpp"
 #include "versine/fusion/planning_search.hpp"
 
 /// The job file of `versine plan`.
@@ -34,6 +34,7 @@ struct PlanConfig {
   int map_points = 61;
   double map_bias = 0.0, map_random_walk = 0.0, map_scale = 0.0, map_scale_walk = 0.0;
   PlanMonteCarloConfig monte_carlo;
+  ReportConfig report;
   fusion::PlanCase plan;  ///< takes the rest; sensors filled in by read_plan_config
   PlanConfig();
 };

@@ -7,6 +7,7 @@
 #include "versine/app/geometry_config.hpp"
 #include "versine/app/gnss.hpp"
 #include "versine/app/recording_config.hpp"
+#include "versine/app/report_config.hpp"
 #include "versine/app/stationing.hpp"
 #include "versine/fusion/aided_ins.hpp"
 #include "versine/fusion/landmark_options.hpp"
@@ -45,6 +46,7 @@ struct SurveyConfig {
   fusion::LandmarkOptions landmark_method;  ///< what `method = "landmark"` wants to know besides
 
   GeometryConfig geometry;  ///< track geometry, when the job has the table
+  ReportConfig report;
 
   struct Output {
     std::string folder;

@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
-/// Scientific figures as SVG text: axes, curves, bars, maps with contours, a legend. No script, no fonts, no external
-/// reference, so that a figure can stand in a file of its own or inside an HTML page.
+#include "versine/report/drawing.hpp"
+
+/// Scientific figures : axes, curves, bars, maps with contours, a legend. Drawn on a page of a report, or as an SVG
+/// file of their own.
 namespace versine::report {
 
 struct Axis {
@@ -38,9 +40,10 @@ struct Figure {
   Axis x, y;
   std::vector<Curve> curves;
   std::optional<Field> field;
-  int width = 640, height = 400;  ///< px
+  double width = 169.0, height = 106.0;  ///< mm, of a file of its own
 };
 
+void draw(Drawing& drawing, const Box& box, const Figure& figure);
 [[nodiscard]] std::string to_svg(const Figure& figure);
 /// Several figures in one picture, row by row. REQUIRES columns > 0.
 [[nodiscard]] std::string to_svg(std::span<const Figure> panels, int columns);

@@ -39,7 +39,7 @@ struct Quality {
   double speed = 0.0;                   ///< m/s
   std::vector<std::string> levels;      ///< of the profile, mildest first
   std::vector<Limit> applied;           ///< those of this speed, `column` being the geometry's own; mildest first
-  double tqi_limit = 0.0;               ///< of a section's TQI, mm; 0: none
+  double tqi_limit = 0.0;               ///< of a section's TQI, m; 0: none
   std::vector<Exceedance> exceedances;  ///< by mileage
   std::vector<Section> sections;
   std::vector<std::string> unchecked;  ///< limits whose column the geometry does not have

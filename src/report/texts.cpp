@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "versine/report/texts.hpp"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace versine::report {
+
+namespace {
+
+using Map = std::map<std::string, std::string, std::less<>>;
+
+Expected<Map> parse(std::string_view text, const std::string& name) {
+  toml::table table;
+  try {
+    table = toml::parse(text, name);
+  } catch (const toml::parse_error& error) {
+    return fail({.file = name,
+                 .line = error.source().begin.line,
+                 .found = std::string(error.description()),
+                 .expected = "TOML",
+                 .advice = "compare with data/texts/en.toml"});
+  }
+  Map out;
+  for (const auto& [section, content] : table) {
+    const toml::table* keys = content.as_table();
+    if (keys == nullptr) continue;
+    for (const auto& [key, value] : *keys) {
+      if (const auto s = value.value<std::string>())
+        out[std::string(section.str()) + "." + std::string(key.str())] = *s;
+    }
+  }
+  return out;
+}
+
+/// The first key that only one of the two has; phrases are the translation's own business.
+Expected<void> same_keys(const Map& ours, const Map& theirs, const std::string& name) {
+  for (const auto& [key, text] : ours) {
+    if (!theirs.contains(key)) {
+      return fail({.file = name, .field = key, .found = "no such text", .expected = text, .advice = "translate it"});
+    }
+  }
+  for (const auto& [key, text] : theirs) {
+    if (!ours.contains(key)) {
+      return fail({.file = name,
+                   .field = key,
+                   .found = "a text that no report uses",
+                   .expected = "the keys of data/texts/en.toml",
+                   .advice = "remove it or mend its name"});
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+const std::vector<std::string>& languages() {
+  static const std::vector<std::string> all{"en", "de", "zh"};
+  return all;
+}
+
+Texts::Texts() : texts_(parse(built_in_texts("en"), "en.toml").value()) {}
+
+Expected<Texts> Texts::load(const std::string& language) {
+  Texts out;
+  if (language == "en") return out;
+  const std::string_view built_in = built_in_texts(language);
+  std::string content(built_in), name = language + ".toml";
+  if (built_in.empty()) {
+    std::ifstream file(language, std::ios::binary);
+    if (!file) {
+      return fail({.field = "report.language",
+                   .found = "'" + language + "'",
+                   .expected = "en, de, zh, or the path of a file of texts",
+                   .advice = "a translation is a copy of data/texts/en.toml"});
+    }
+    std::ostringstream bytes;
+    bytes << file.rdbuf();
+    content = bytes.str();
+    name = language;
+  }
+  auto texts = parse(content, name);
+  if (!texts) return tl::unexpected(texts.error());
+  if (auto done = same_keys(out.texts_, *texts, name); !done) return tl::unexpected(done.error());
+  out.texts_ = std::move(*texts);
+  const auto tag = out.texts_.find("language.tag");
+  out.language_ = tag == out.texts_.end() ? language : tag->second;
+  return out;
+}
+
+const std::string& Texts::operator()(std::string_view key) const {
+  const auto it = texts_.find(key);
+  if (it == texts_.end()) throw std::out_of_range("Texts: no text '" + std::string(key) + "'");
+  return it->second;
+}
+
+std::string Texts::phrase(const std::string& english) const {
+  const auto it = texts_.find("phrase." + english);
+  return it == texts_.end() ? english : it->second;
+}
+
+std::string Texts::quantity(const std::string& column) const {
+  if (const auto it = texts_.find("quantity." + column); it != texts_.end()) return it->second;
+  // "quantity.alignment_left_*" = "Alignment left {}": the longest pattern that fits.
+  const std::string* best = nullptr;
+  std::string rest;
+  std::size_t longest = 0;
+  for (const auto& [key, text] : texts_) {
+    if (!key.starts_with("quantity.") || !key.ends_with("*")) continue;
+    const std::string head = key.substr(9, key.size() - 10);
+    if (!column.starts_with(head) || head.size() < longest) continue;
+    longest = head.size();
+    best = &text;
+    rest = column.substr(head.size());
+  }
+  if (best == nullptr) return column;
+  std::string out = *best;
+  if (rest.size() == 2 && rest[0] == 'd') rest[0] = 'D';  // the bands of EN 13848
+  std::replace(rest.begin(), rest.end(), '_', ' ');
+  if (const auto at = out.find("{}"); at != std::string::npos) out.replace(at, 2, rest);
+  return out;
+}
+
+}  // namespace versine::report
