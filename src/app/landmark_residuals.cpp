@@ -13,13 +13,18 @@ namespace versine::app {
 
 namespace {
 
-/// Mileage of the grid point that was passed nearest in time, when that is within ten seconds.
+/// Mileage where the trolley stood: of the grid points passed before and after, when they are neighbours.
 std::optional<double> mileage_at(const track::Geometry* g, Time t) {
-  if (g == nullptr || g->time.empty()) return {};
-  const auto away = [t](Time x) { return std::abs((x - t).ns); };
-  const auto it = std::min_element(g->time.begin(), g->time.end(), [&](Time a, Time b) { return away(a) < away(b); });
-  if (away(*it) > 10'000'000'000) return {};
-  return g->mileage[static_cast<std::size_t>(it - g->time.begin())];
+  if (g == nullptr) return {};
+  std::optional<std::size_t> before, after;
+  for (std::size_t i = 0; i < g->time.size(); ++i) {
+    if (g->time[i] <= t && (!before || g->time[*before] < g->time[i])) before = i;
+    if (g->time[i] >= t && (!after || g->time[i] < g->time[*after])) after = i;
+  }
+  if (!before || !after) return {};
+  const double a = g->mileage[*before], b = g->mileage[*after];
+  if (std::abs(a - b) > 4.0 * g->step) return {};
+  return 0.5 * (a + b);
 }
 
 bool rejected(const std::vector<fusion::Innovation>& innovations, Time t) {

@@ -39,6 +39,8 @@ std::string day_of(const json& run) {
 /// Keys that hold something, as "table.key".
 void flatten(const json& value, const std::string& name, report::RawTable& out) {
   if (value.is_object()) {
+    const auto file = value.find("file");  // a sensor that the job does not name
+    if (file != value.end() && file->is_string() && file->get<std::string>().empty()) return;
     for (const auto& [key, inner] : value.items()) flatten(inner, name.empty() ? key : name + "." + key, out);
     return;
   }
@@ -145,7 +147,8 @@ report::Facts read_facts(const std::filesystem::path& folder, const json& run) {
   f.settings.header = {"key", "value"};
   flatten(settings, "", f.settings);
   f.timings.header = {"stage", "seconds"};
-  for (const auto& [stage, seconds] : run.value("timings_s", json::object()).items()) {
+  const json timings = run.value("timings_s", json::object());
+  for (const auto& [stage, seconds] : timings.items()) {
     f.timings.rows.push_back({stage, fmt::format("{:.3f}", seconds.get<double>())});
   }
   for (const json& w : run.value("warnings", json::array())) f.warnings.push_back(text_of(w));

@@ -79,7 +79,8 @@ void read_numbers(const json& results, report::PlanReport& r) {
 void read_sensors(const json& settings, report::PlanReport& r) {
   r.sensors.header = {"key", "value"};
   for (const char* section : {"sensors", "survey"}) {
-    for (const auto& [key, value] : settings.value(section, json::object()).items()) {
+    const json part_of_settings = settings.value(section, json::object());
+    for (const auto& [key, value] : part_of_settings.items()) {
       if (const std::string text = text_of(value); !text.empty()) r.sensors.rows.push_back({key, text});
     }
   }

@@ -223,7 +223,8 @@ Expected<report::SurveyReport> read_survey_report(const std::filesystem::path& f
   r.origin = settings.value("method", "") == "landmark" ? "landmark dead reckoning"
              : run.value("command", "") == "geometry"   ? settings.value("/trajectory/file"_json_pointer, std::string())
                                                         : "aided INS, smoothed";
-  for (const auto& [what, how] : geometry.value("conventions", json::object()).items()) {
+  const json conventions = geometry.value("conventions", json::object());
+  for (const auto& [what, how] : conventions.items()) {
     r.conventions.emplace_back(what, text_of(how));
   }
   read_quality(geometry, r);

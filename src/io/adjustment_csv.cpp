@@ -15,7 +15,8 @@ using Cell = std::function<std::string(std::size_t)>;
 
 std::string text_of(double value, int digits, bool comma) {
   if (!std::isfinite(value)) return "";
-  std::string s = fmt::format("{:.{}f}", value == 0.0 ? 0.0 : value, digits);
+  std::string s = fmt::format("{:.{}f}", value, digits);
+  if (s.front() == '-' && s.find_first_not_of("-0.") == std::string::npos) s.erase(0, 1);  // no -0.0
   if (comma) std::replace(s.begin(), s.end(), '.', ',');
   return s;
 }

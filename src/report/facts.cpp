@@ -147,7 +147,7 @@ void add_inputs(Pages& pages, const Facts& f, const Texts& t) {
                  .title = t("inputs.settings"),
                  .notes = {t("inputs.settings_note")},
                  .empty = t("inputs.none"),
-                 .blocks = 2};
+                 .blocks = 3};
   settings.columns = {{t("inputs.key"), Anchor::start, true, 1.0}, {t("inputs.value"), Anchor::start, true, 1.3}};
   settings.rows = cells_of(f.settings, {"key", "value"});
   y = pages.add(settings, y + 5.0);

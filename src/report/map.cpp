@@ -96,7 +96,7 @@ void draw_map(Drawing& d, const Box& box, const MapView& view) {
     } else {
       d.circle(p, 0.8, Fill{0xffffff}, Pen{mark.colour, 0.3, Dash::solid});
     }
-    const bool far_right = p.x > box.right() - 25.0;
+    const bool far_right = p.x > box.right() - 14.0;
     if (!mark.text.empty()) {
       d.text({p.x + (far_right ? -1.6 : 1.6), p.y - 1.2}, mark.text,
              {.size = 2.3, .anchor = far_right ? Anchor::end : Anchor::start, .colour = mark.colour});

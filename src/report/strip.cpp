@@ -256,6 +256,16 @@ void fit_scale(Strip& s) {
       high = std::max(high, v);
     }
   }
+  // The band is seen whole where it is not wider than the curve itself.
+  for (const StripCurve& c : s.curves) {
+    double sum = 0.0, n = 0.0;
+    for (const double v : c.sigma) {
+      if (std::isfinite(v)) sum += v, n += 1.0;
+    }
+    const double half = n > 0.0 ? std::min(1.96 * sum / n, std::max(-low, high)) : 0.0;
+    low -= half;
+    high += half;
+  }
   const double reach = std::max({-low, high, 1e-3});
   for (const StripLimit& l : s.limits) {
     if (l.value > 0.0 && l.value < 2.0 * reach) high = std::max(high, l.value);
@@ -264,6 +274,19 @@ void fit_scale(Strip& s) {
   const double range = std::max(high - low, 1e-3);
   s.low = low - 0.12 * range;
   s.high = high + 0.08 * range;
+}
+
+void fit_to_data(Strip& s) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const StripCurve& c : s.curves) {
+    for (const double v : c.value) {
+      if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+    }
+  }
+  if (!(low <= high)) low = high = 0.0;
+  const double room = std::max(0.1 * (high - low), 1e-4 + 1e-9 * std::abs(high));
+  s.low = low - room;
+  s.high = high + room;
 }
 
 void draw_strips(Drawing& d, const Box& box, std::span<const Strip> strips, const StripAxis& axis, bool extremes) {

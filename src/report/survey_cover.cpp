@@ -175,17 +175,17 @@ void add_cover(Pages& pages, const SurveyReport& r, const Texts& t) {
   Drawing& d = pages.page();
   d.text({box.x, box.y + 8.0}, t(r.distance.empty() ? "cover.positions" : "cover.survey"), {.size = 7.0, .bold = true});
   d.text({box.x, box.y + 15.0}, fitted(subject_of(r.facts), 150.0, 4.2), {.size = 4.2, .colour = muted});
-  const double right = box.x + 162.0;
+  const double right = box.x + 166.0;
   draw_verdict(d, {right, box.y + 1.0, box.right() - right, 20.5}, r, t);
   draw_heading(d, {box.x, box.y + 26.0}, t("cover.who"));
-  draw_pairs(d, {box.x, box.y + 28.0, 78.0, 0.0}, who_and_where(r, t), 26.0);
+  const double left_end = draw_pairs(d, {box.x, box.y + 28.0, 78.0, 0.0}, who_and_where(r, t), 26.0);
   draw_heading(d, {box.x + 84.0, box.y + 26.0}, t("cover.how"));
-  draw_pairs(d, {box.x + 84.0, box.y + 28.0, 74.0, 0.0}, how(r, t), 26.0);
+  const double right_end = draw_pairs(d, {box.x + 84.0, box.y + 28.0, 78.0, 0.0}, how(r, t), 26.0);
   draw_map(d, {right, box.y + 25.0, box.right() - right, 73.0}, survey_map(r));
   std::vector<std::pair<std::string, std::string>> signs;
   for (const auto& [what, convention] : r.conventions) signs.emplace_back(t.phrase(what), t.phrase(convention));
   signs.emplace_back(t("cover.uncertainty"), t("cover.uncertainty_text"));
-  const double low = box.y + 103.0;
+  const double low = std::max({left_end, right_end, box.y + 100.0}) + 5.0;
   draw_heading(d, {box.x, low}, t("cover.conventions"));
   const std::size_t half = (signs.size() + 1) / 2;
   draw_pairs(d, {box.x, low + 2.0, 136.0, 0.0}, {signs.begin(), signs.begin() + static_cast<std::ptrdiff_t>(half)},
@@ -215,16 +215,7 @@ void add_trajectory(Pages& pages, const SurveyReport& r, const Texts& t) {
   for (const Quantity& q : r.trajectory) {
     Strip s{.name = t.quantity(q.column), .detail = t.phrase(q.unit), .decimals = q.unit == "m" ? 3 : 2};
     s.curves.push_back({q.value, q.sigma});
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const double v : q.value) {
-      if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
-    }
-    if (low <= high) {
-      const double room = std::max(0.08 * (high - low), 1e-6 + 1e-9 * std::abs(high));
-      s.low = low - room;
-      s.high = high + room;
-    }
-    fit_scale(s);
+    fit_to_data(s);
     strips.push_back(std::move(s));
   }
   StripAxis axis{.x = r.time, .from = r.time.front(), .to = r.time.back(), .span = r.time.back() - r.time.front()};

@@ -38,7 +38,7 @@ std::string limits_text(const SurveyReport& r, const std::string& column) {
   std::string text;
   for (const SurveyLimit& l : r.applied) {
     if (l.column != column) continue;
-    text += fmt::format("{}{} {:g}/{:+g}", text.empty() ? "" : ", ", l.level, l.low, l.high);
+    text += fmt::format("{}{} {:.3g}/{:+.3g}", text.empty() ? "" : ", ", l.level, l.low, l.high);
   }
   return text;
 }
@@ -59,7 +59,8 @@ Strip strip_of(const SurveyReport& r, const Texts& t, const Quantity& q) {
                        r.exceedances.number(i, "end_distance_m"), severity_of(r, r.exceedances.at(i, "level")),
                        levels});
   }
-  s.decimals = q.unit == "mm/m" ? 2 : 1;
+  s.decimals = q.unit == "mm/m" ? 2 : q.unit == "m" ? 3 : 1;
+  if (q.column.starts_with("height")) fit_to_data(s);
   return s;
 }
 

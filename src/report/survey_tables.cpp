@@ -44,7 +44,9 @@ std::string place(const RawTable& raw, std::size_t i, const std::string& column)
 }
 
 Figure residual_figure(const SurveyReport& r, const Texts& t) {
-  Figure f{.title = t("control.figure"), .x = {.label = t("control.number")}, .y = {.label = t("control.residual_mm")}};
+  Figure f{.title = t("control.figure"),
+           .x = {.label = t("control.number"), .low = 0.0, .high = static_cast<double>(r.landmarks.rows.size() + 1)},
+           .y = {.label = t("control.residual_mm")}};
   const std::pair<const char*, const char*> parts[] = {
       {"residual_north_mm", "control.north"}, {"residual_east_mm", "control.east"}, {"residual_up_mm", "control.up"}};
   for (const auto& [column, name] : parts) {
@@ -303,7 +305,10 @@ void add_adjustment(Pages& pages, const SurveyReport& r, const Texts& t) {
   }
   for (std::size_t i = 0; i < r.adjustment.rows.size(); ++i) {
     auto& row = table.rows.emplace_back();
-    for (const std::string& cell : r.adjustment.rows[i]) row.push_back({t.phrase(cell)});
+    for (std::size_t k = 0; k < r.adjustment.rows[i].size(); ++k) {
+      const bool mileage = k < n && r.adjustment.header[k] == "mileage_m";
+      row.push_back({mileage ? place(r.adjustment, i, "mileage_m") : t.phrase(r.adjustment.rows[i][k])});
+    }
   }
   pages.add(table);
 }

@@ -64,6 +64,8 @@ void draw_level_mark(Drawing& d, Point centre, double size, int severity, int se
 
 /// Sets low and high so that the data fit, and limits within reach of them are seen.
 void fit_scale(Strip& strip);
+/// The same for heights and angles, whose zero means nothing: the data fill the strip.
+void fit_to_data(Strip& strip);
 
 /// Draws strips that share the height of the box, the axis of places below them. Curves are thinned to the lowest and
 /// highest value in each 0.35 mm. `extremes` writes smallest, largest value and mean sigma right of each strip.

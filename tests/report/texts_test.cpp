@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "versine/report/texts.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+namespace versine::report {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::ptrdiff_t places(const std::string& text) {
+  return std::count(text.begin(), text.end(), '{');
+}
+
+TEST(Texts, EveryLanguageHasEveryKeyWithTheSamePlaces) {
+  const Texts english;
+  for (const std::string& language : languages()) {
+    const auto texts = Texts::load(language);
+    ASSERT_TRUE(texts) << texts.error().message();
+    EXPECT_EQ(texts->language(), language);
+    ASSERT_EQ(texts->all().size(), english.all().size());
+    for (const auto& [key, text] : texts->all()) {
+      EXPECT_FALSE(text.empty()) << language << " " << key;
+      EXPECT_EQ(places(text), places(english(key))) << language << " " << key;
+    }
+  }
+}
+
+TEST(Texts, ColumnsHaveNames) {
+  const auto german = Texts::load("de");
+  ASSERT_TRUE(german);
+  EXPECT_EQ(Texts().quantity("alignment_left_d1"), "Alignment left D1");
+  EXPECT_EQ(Texts().quantity("twist_3m"), "Twist 3m");
+  EXPECT_EQ(Texts().quantity("check_30m_lateral_left_worst"), "30 m check lateral left worst");
+  EXPECT_EQ(german->quantity("gauge_deviation"), "Spurweite minus Soll");
+  EXPECT_EQ(german->phrase("positive upwards"), "positiv nach oben");
+  EXPECT_EQ(german->phrase("what no one translated"), "what no one translated");
+  EXPECT_EQ(Texts().quantity("something_else"), "something_else");
+}
+
+TEST(Texts, ATranslationIsAFile) {
+  const auto path = std::filesystem::temp_directory_path() / "versine_texts_test.toml";
+  std::ifstream english(VERSINE_SOURCE_DIR "/data/texts/en.toml");
+  std::string content((std::istreambuf_iterator<char>(english)), {});
+  const auto at = content.find("tag = \"en\"");
+  ASSERT_NE(at, std::string::npos);
+  content.replace(at, 10, "tag = \"fr\"");
+  std::ofstream(path) << content;
+  const auto texts = Texts::load(path.string());
+  ASSERT_TRUE(texts) << texts.error().message();
+  EXPECT_EQ(texts->language(), "fr");
+  std::ofstream(path) << content.substr(0, content.find("[verdict]"));
+  const auto half = Texts::load(path.string());
+  ASSERT_FALSE(half);
+  EXPECT_THAT(half.error().message(), HasSubstr("no such text"));
+  std::filesystem::remove(path);
+  const auto unknown = Texts::load("xx");
+  ASSERT_FALSE(unknown);
+  EXPECT_THAT(unknown.error().message(), HasSubstr("en, de, zh"));
+}
+
+}  // namespace
+}  // namespace versine::report
