@@ -4,7 +4,7 @@ JOBS ?= $(shell nproc)
 BUILD := build/release
 VERSINE := $(BUILD)/apps/versine/versine
 
-.PHONY: all setup build test demo screenshots accuracy figures benchmarks format clean accuracy-positioning
+.PHONY: all setup build test demo screenshots report-images accuracy figures benchmarks format clean accuracy-positioning
 all: build
 
 setup:
@@ -30,7 +30,9 @@ demo: build
 	$(VERSINE) simulate examples/scenarios/slab-1km.toml -o out/demo/recording
 	$(VERSINE) survey out/demo/recording/survey.toml -o out/demo/result $(DEMO_LIMITS)
 	$(VERSINE) compare out/demo/result out/demo/recording/truth_trajectory.csv
+	$(VERSINE) report out/demo/result --format html,pdf --quiet
 	@echo; echo "The result is in out/demo/result. Look at it: $(VERSINE) view out/demo/result"
+	@echo "The report: out/demo/result/report.html (opens by double click), report.pdf"
 
 # Pictures of docs/viewer.md: the demo and 10 km of line with faults, in a real browser.
 screenshots: demo
@@ -64,6 +66,10 @@ accuracy-positioning: setup
 	benchmarks/rinex_hour.py out/hour
 	time -p $(VERSINE) gnss out/hour/job.toml -o out/hour/result
 	benchmarks/rinex_hour.py --compare out/hour out/hour/result
+
+# Pages of reports as pictures (docs/report.md); with VERSINE_DATA also of the Brussels journeys.
+report-images: build
+	benchmarks/report_images.sh $(VERSINE) docs/images
 
 format:
 	git ls-files '*.cpp' '*.hpp' | xargs clang-format -i

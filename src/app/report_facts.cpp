@@ -128,6 +128,10 @@ report::Facts read_facts(const std::filesystem::path& folder, const json& run) {
   report::Facts f;
   const json settings = run.value("settings", json::object());
   f.title = settings.value("title", "");
+  for (const json& input : run.value("inputs", json::array())) {
+    if (!f.title.empty() || input.value("role", "") != "job") continue;
+    f.title = std::filesystem::path(input.value("file", "")).stem().string();
+  }
   if (f.title.empty()) f.title = folder.filename().string();
   if (const auto r = settings.find("report"); r != settings.end() && r->is_object()) {
     report::Cover& c = f.cover;

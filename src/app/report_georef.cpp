@@ -182,7 +182,7 @@ Expected<report::GeorefReport> read_georef_report(const std::filesystem::path& f
   r.ambiguous.header = {"recording",   "journey",  "span_s", "span_m",    "probability", "taken",
                         "alternative", "position", "speed",  "turn_rate", "route"};
   const json network = index->value("network", json::object());
-  r.network = network.value("file", "");
+  r.network = std::filesystem::path(network.value("file", "")).filename().string();
   r.tracks = text_of(network.value("tracks", json()));
   for (const json& w : network.value("warnings", json::array())) r.facts.warnings.push_back(text_of(w));
   Reader reader{r, {}, {}};

@@ -24,7 +24,7 @@ nav a:hover,nav a:focus-visible{text-decoration:underline}
 section{scroll-margin-top:3.5rem}
 h2{position:absolute;width:1px;height:1px;overflow:hidden;clip-path:inset(50%);margin:0}
 .sheet{margin:1rem auto;width:min(96vw,1500px);background:#fff;box-shadow:0 1px 5px #0003;padding:1.2%;box-sizing:border-box}
-.sheet svg{display:block;width:100%;height:auto;font-family:inherit}
+.sheet>svg{display:block;width:100%;height:auto;font-family:inherit;overflow:visible}
 path{stroke-linejoin:round}
 @page{size:A4 landscape;margin:8mm}
 @media print{body{background:#fff}nav{display:none}.sheet{margin:0;width:281mm;height:193mm;padding:0;box-shadow:none;break-after:page;overflow:hidden}section:last-of-type .sheet:last-of-type{break-after:auto}}

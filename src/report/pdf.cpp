@@ -125,13 +125,11 @@ class Painter {
 
 }  // namespace
 
-Expected<void> write_pdf(const std::filesystem::path& path, const std::vector<PdfPage>& pages, const PdfInfo& info,
-                         double margin) {
+Expected<void> write_pdf(const std::filesystem::path& path, const std::vector<PdfPage>& pages, const PdfInfo& info) {
   if (pages.empty()) return fail({.file = path.string(), .found = "a document without pages"});
-  const auto width = [&](const Drawing& d) { return (d.width + 2.0 * margin) * points_per_mm; };
-  const auto height = [&](const Drawing& d) { return (d.height + 2.0 * margin) * points_per_mm; };
-  const Drawing& first = *pages.front().drawing;
-  const Owned<cairo_surface_t> surface(cairo_pdf_surface_create(path.string().c_str(), width(first), height(first)));
+  constexpr double width = 297.0, height = 210.0;  // A4 landscape, mm
+  const Owned<cairo_surface_t> surface(
+      cairo_pdf_surface_create(path.string().c_str(), width * points_per_mm, height * points_per_mm));
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_TITLE, info.title.c_str());
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_SUBJECT, info.subject.c_str());
   cairo_pdf_surface_set_metadata(surface.get(), CAIRO_PDF_METADATA_CREATOR, "Versine");
@@ -145,7 +143,6 @@ Expected<void> write_pdf(const std::filesystem::path& path, const std::vector<Pd
     int number = 0;
     for (const PdfPage& page : pages) {
       ++number;
-      cairo_pdf_surface_set_size(surface.get(), width(*page.drawing), height(*page.drawing));
       if (!page.bookmark.empty()) {
         const std::string target = "page=" + std::to_string(number);
         cairo_pdf_surface_add_outline(surface.get(), CAIRO_PDF_OUTLINE_ROOT, page.bookmark.c_str(), target.c_str(),
@@ -153,7 +150,7 @@ Expected<void> write_pdf(const std::filesystem::path& path, const std::vector<Pd
       }
       cairo_save(cr.get());
       cairo_scale(cr.get(), points_per_mm, points_per_mm);
-      cairo_translate(cr.get(), margin, margin);
+      cairo_translate(cr.get(), 0.5 * (width - page.drawing->width), 0.5 * (height - page.drawing->height));
       for (const Item& item : page.drawing->items) std::visit(painter, item);
       painter.finish();
       cairo_restore(cr.get());

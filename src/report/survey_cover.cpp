@@ -13,12 +13,12 @@ namespace {
 
 constexpr std::uint32_t muted = 0x57606a, ink = 0x1b1f24;
 
-std::string levels_counted(const SurveyReport& r) {
+std::string levels_counted(const SurveyReport& r, const Texts& t) {
   std::map<std::string, int> counts;
   for (std::size_t i = 0; i < r.exceedances.rows.size(); ++i) ++counts[r.exceedances.at(i, "level")];
   std::string text;
   for (auto level = r.levels.rbegin(); level != r.levels.rend(); ++level) {
-    if (counts[*level] > 0) text += fmt::format("{}{} {}", text.empty() ? "" : "   ", counts[*level], *level);
+    if (counts[*level] > 0) text += fmt::format("{}{} {}", text.empty() ? "" : "   ", counts[*level], t.phrase(*level));
   }
   return text;
 }
@@ -46,7 +46,7 @@ void draw_verdict(Drawing& d, const Box& box, const SurveyReport& r, const Texts
   d.rectangle({box.x, box.y, 3.0, box.height}, Fill{look.colour});
   d.text({box.x + 7.0, box.y + 8.2}, t(look.key), {.size = 5.6, .bold = true, .colour = look.colour});
   std::string detail = t(verdict(r) == Verdict::not_assessed ? "verdict.no_limits" : "verdict.no_exceedance");
-  if (!r.exceedances.rows.empty()) detail = levels_counted(r);
+  if (!r.exceedances.rows.empty()) detail = levels_counted(r, t);
   std::size_t over = 0;
   for (std::size_t i = 0; i < r.sections.rows.size(); ++i) over += r.sections.at(i, "over").empty() ? 0 : 1;
   if (over > 0) detail += "   " + fmt::format(fmt::runtime(t("verdict.sections_over")), over);

@@ -18,8 +18,8 @@ struct PdfInfo {
 };
 
 /// Vector pages through Cairo, text through Pango: embedded fonts, other scripts from whatever font has them,
-/// searchable. Each drawing lies on a page larger by `margin` mm on every side.
+/// searchable. Each drawing lies in the middle of A4 landscape.
 [[nodiscard]] Expected<void> write_pdf(const std::filesystem::path& path, const std::vector<PdfPage>& pages,
-                                       const PdfInfo& info, double margin = 8.0);
+                                       const PdfInfo& info);
 
 }  // namespace versine::report
