@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <set>
 
 #include "versine/report/document.hpp"
@@ -59,15 +60,14 @@ void write_sheet(lxw_worksheet* sheet, const Table& t, lxw_format* bold, lxw_for
 }  // namespace
 
 Expected<void> write_document_xlsx(const std::filesystem::path& path, const Document& document) {
-  lxw_workbook_options options{};
-  options.constant_memory = LXW_FALSE;
-  lxw_workbook* book = workbook_new_opt(path.string().c_str(), &options);
   const auto refuse = [&](const char* found) {
     return fail({.file = path.string(),
                  .found = found,
                  .expected = "a writable place with free space",
                  .advice = "check permissions and free space"});
   };
+  if (!std::ofstream(path, std::ios::binary)) return refuse("that it cannot be written");  // else the library prints
+  lxw_workbook* book = workbook_new(path.string().c_str());
   if (book == nullptr) return refuse("a workbook that cannot be made");
   lxw_format *bold = workbook_add_format(book), *wrap = workbook_add_format(book);
   format_set_bold(bold);
