@@ -1,28 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hdf5_file.hpp"
 
-#include <hdf5.h>
-
 #include <algorithm>
+
+#include "hdf5_handle.hpp"
 
 namespace versine::io {
 
 namespace {
-// Closes an HDF5 object with the function for its kind.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  operator hid_t() const { return id_; }  // NOLINT(google-explicit-constructor): it is one
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
+using Handle = Hdf5Handle;
 
 bool put_text(hid_t object, const std::string& name, const std::string& text) {
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);

@@ -138,7 +138,11 @@ class Batch(unittest.TestCase):
         store = self.store()
         chance = random.Random(6)
         kills = 0
-        while kills < 10 and self.receipts(store) < self.COUNT:
+        while kills < 10:
+            done = sorted((store / "receipts").glob("*/*.json"))
+            if len(done) > self.COUNT - 6:  # a fast machine: open some of them again
+                for path in chance.sample(done, 30):
+                    path.unlink()
             before = self.receipts(store)
             process = self.start(store, "--threads", "2", start_new_session=True)
             if kills % 2 == 0:
@@ -147,7 +151,6 @@ class Batch(unittest.TestCase):
             os.killpg(process.pid, signal.SIGKILL)
             process.wait()
             kills += 1
-        self.assertEqual(kills, 10)
         self.assert_as_serial(store)
 
     def test_worker_killed_alone(self):
