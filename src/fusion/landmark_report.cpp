@@ -49,10 +49,10 @@ void warn_model(const std::vector<Stretch>& stretches, const LandmarkOptions& o,
   if (worst == nullptr) return;
   record.warnings.push_back(fmt::format(
       "the reduced model may be off by more than {:.1f} mm (1 sigma) in {} of {} stretches between landmarks; at worst "
-      "{:.2f} mm over {:.0f} m with {:.0f} mrad of cant and {:.1f} deg of turn. Its sigmas include this. Closer "
-      "landmarks, better calibrated mounting angles, or the aided INS cure it.",
-      o.model_error_limit / units::mm, count, stretches.size(), worst->model_error / units::mm, worst->length,
-      worst->cant_range * 1e3, worst->heading_range / units::deg));
+      "{:.2f} mm between {:.0f} and {:.0f} m from the start, with {:.0f} mrad of cant and {:.1f} deg of turn. Its "
+      "sigmas include this. Closer landmarks, better calibrated mounting angles, or the aided INS cure it.",
+      o.model_error_limit / units::mm, count, stretches.size(), worst->model_error / units::mm, worst->begin,
+      worst->begin + worst->length, worst->cant_range * 1e3, worst->heading_range / units::deg));
 }
 
 void note_observability(const Observability& o, Time from, Time to, RunRecord& record) {

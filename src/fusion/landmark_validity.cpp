@@ -83,10 +83,12 @@ std::vector<Stretch> judge_stretches(std::span<const Node> nodes, std::span<cons
                                      const ModelErrors& errors) {
   std::vector<Stretch> stretches;
   std::size_t first = 0;
+  double travelled = 0.0;
   const auto close = [&](std::size_t last) {
     if (last <= first) return;
-    Stretch s{.first = first, .last = last};
+    Stretch s{.first = first, .last = last, .begin = travelled};
     measure(nodes, s);
+    travelled += s.length;
     judge(s, errors);
     stretches.push_back(s);
     first = last;

@@ -24,6 +24,7 @@ struct ModelErrors {
 /// A stretch between two landmarks, or before the first or after the last.
 struct Stretch {
   std::size_t first = 0, last = 0;  ///< nodes
+  double begin = 0.0;               ///< m travelled from the start
   double length = 0.0;              ///< m
   double duration = 0.0;            ///< s
   double cant_range = 0.0;          ///< rad: largest minus smallest roll
