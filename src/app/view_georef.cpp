@@ -159,7 +159,8 @@ Expected<std::shared_ptr<GeorefView>> open(const fs::path& folder, const std::st
     }
   }
   const json verdict = verdict_of(journeys, failures.size());
-  const std::string subtitle = fmt::format("{} recordings · map {}", number, network.value("file", ""));
+  const std::string subtitle =
+      fmt::format("{} recordings · map {}", number, fs::path(network.value("file", "")).filename().string());
   json georef{{"network",
                {{"tracks", network.value("tracks", view->network.names.size())},
                 {"names", view->network.names},

@@ -43,6 +43,7 @@ export class GeorefScreen implements Screen {
   private probability: ProbabilityStrip | null = null;
   private stores: Record<'distance' | 'sigma' | 'across', SeriesStore> | null = null;
   private pending = 0;
+  private width = 100;
 
   constructor(
     private readonly root: HTMLElement,
@@ -134,6 +135,7 @@ export class GeorefScreen implements Screen {
     await this.map.show(journey);
     if (at && best) this.map.zoomTo(best, ...this.onPath(at));
     document.documentElement.dataset.journey = journey.id;
+    document.documentElement.dataset.loaded = 'strips';
   }
 
   private ends(s: Stretch): [number, number] {
@@ -184,8 +186,8 @@ export class GeorefScreen implements Screen {
   }
 
   private rebuild(): void {
-    const width = Math.max(this.centre.clientWidth - labelWidth - valueWidth, 100);
-    this.strips.forEach((strip, i) => strip.build(width, stripHeight, this.view.from, this.view.to, i + 1 === this.strips.length));
+    this.width = Math.max(this.centre.clientWidth - labelWidth - valueWidth, 100);
+    this.strips.forEach((strip, i) => strip.build(this.width, stripHeight, this.view.from, this.view.to, i + 1 === this.strips.length));
     this.draw();
   }
 
@@ -198,7 +200,7 @@ export class GeorefScreen implements Screen {
     const { from, to, cursor } = this.view;
     const journey = this.journey;
     if (!journey || !this.stores?.distance.loaded || !this.probability) return;
-    const spoken = [this.probability.draw(from, to, cursor, stripHeight)];
+    const spoken = [this.probability.draw(from, to, cursor, this.width, stripHeight)];
     for (const strip of this.strips) {
       void strip.show(from, to);
       strip.moveCursor(cursor);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Journey, Stretch } from './contract';
-import { labelWidth, scaleWidth, valueWidth } from './strips';
+import { scaleWidth } from './strips';
 import { element, percent } from './text';
 import { css } from './theme';
 
@@ -49,10 +49,10 @@ export class ProbabilityStrip {
   private from = 0;
   private to = 1;
 
-  draw(from: number, to: number, cursor: number, height: number): string {
+  /** `width` is that of the strips' drawings, so that one cursor line goes through all of them. */
+  draw(from: number, to: number, cursor: number, width: number, height: number): string {
     [this.from, this.to] = [from, to];
     this.element.style.height = `${height}px`;
-    const width = Math.max(this.element.clientWidth - labelWidth - valueWidth, 50);
     const ratio = devicePixelRatio;
     [this.canvas.width, this.canvas.height] = [width * ratio, (height - 1) * ratio];
     Object.assign(this.canvas.style, { width: `${width}px`, height: `${height - 1}px`, display: 'block' });
