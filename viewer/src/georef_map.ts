@@ -68,7 +68,7 @@ export class GeorefMap {
     this.style();
   }
 
-  /** The whole network; its coarser levels come when the finest one is drawn. */
+  /** The whole network; its coarser levels come when the finest one is there. */
   async load(): Promise<void> {
     const finest = lines(await getMap('0'));
     this.levels[0].getSource()!.addFeatures(finest.map((line, i) => {
@@ -76,6 +76,10 @@ export class GeorefMap {
       feature.set('track', this.georef.network.names[i]);
       return feature;
     }));
+    void this.loadCoarse();
+  }
+
+  private async loadCoarse(): Promise<void> {
     for (const level of [1, 2]) {
       const coarse = lines(await getMap(String(level)));
       const features: Feature[] = [];

@@ -72,7 +72,7 @@ test('values at the cursor are those of the files, over time and over distance',
   assert.match(await page.textContent('[data-strip="speed"] .strip-value span'), /± 0\.49 m\/s/);
   assert.equal(await read(page, 'sigma'), '0.58');
   assert.equal(await read(page, 'across'), '−0.50');
-  assert.equal(await read(page, 'probability'), '100 %');
+  assert.equal(await read(page, 'probability'), '100%');
   assert.match(await page.textContent('.km'), /85\.0 m/);
   await press(page, 't');
   await page.waitForFunction(() => document.querySelector('.km').textContent.includes('0+085'));
@@ -86,8 +86,8 @@ test('the stretch is walked to, another path chosen, confirmed, and taken back, 
   const page = await open(browser, await view(result));
   await press(page, 'n');
   assert.equal(await page.getAttribute('.stretches tr[aria-current]', 'aria-current'), 'true');
-  assert.match(await page.textContent('.stretches tbody tr'), /20 %.*run\.h5.*B.*C.*fixes for 1 by 1\.4/s);
-  assert.equal(await read(page, 'probability'), '80 %');
+  assert.match(await page.textContent('.stretches tbody tr'), /20%.*run\.h5.*B.*C.*fixes for 1 by 1\.4/s);
+  assert.equal(await read(page, 'probability'), '80%');
   await press(page, '2');
   assert.equal(await page.getAttribute('.choice [data-path="2"]', 'aria-checked'), 'true');
   await press(page, 'Enter');
