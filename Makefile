@@ -35,12 +35,19 @@ demo: build
 	@echo "The report: out/demo/result/report.html (opens by double click), report.pdf"
 
 # Pictures of docs/viewer.md: the demo and 10 km of line with faults, in a real browser.
+VERSINE_DATA ?= ../shared/data
+BRUSSELS := $(if $(wildcard $(VERSINE_DATA)/brussels-airport),out/brussels)
+# So poor that a path is in doubt.
+POOR_GNSS := --set gnss.sigma_horizontal_m=4 --set gnss.correlated_horizontal_m=6 --set gnss.correlation_time_s=300
 screenshots: demo
 	rm -rf out/line && $(VERSINE) simulate examples/scenarios/line-10km.toml -o out/line/recording
 	$(VERSINE) survey out/line/recording/survey.toml -o out/line/result $(LINE_LIMITS)
+	rm -rf out/harbour && $(VERSINE) simulate examples/scenarios/harbour-day.toml -o out/harbour/recording $(POOR_GNSS)
+	$(VERSINE) georef out/harbour/recording/georef.toml -o out/harbour/result
+	$(if $(BRUSSELS),VERSINE_DATA=$(VERSINE_DATA) $(VERSINE) georef examples/georef/brussels.toml -o $(BRUSSELS))
 	mkdir -p docs/images
 	VERSINE=$(VERSINE) VERSINE_SOURCE_DIR=. VERSINE_PAGE=$(abspath $(BUILD))/viewer/page \
-	  node viewer/tests/screenshots.mjs docs/images out/demo/result out/line/result
+	  node viewer/tests/screenshots.mjs docs/images out/demo/result out/line/result out/harbour/result $(BRUSSELS)
 
 # Accuracy on the real recordings (docs/accuracy.md); VERSINE_DATA names their folder.
 accuracy: build

@@ -34,6 +34,17 @@ function lines(points: Points): number[][][] {
   return out;
 }
 
+/** Tracks that follow each other as one piece. */
+function spans(tracks: { from: number; to: number }[]): { from: number; to: number }[] {
+  const out: { from: number; to: number }[] = [];
+  for (const { from, to } of tracks) {
+    const last = out[out.length - 1];
+    if (last && from - last.to < 0.01) last.to = to;
+    else out.push({ from, to });
+  }
+  return out;
+}
+
 /** The network in grey, one journey's hypotheses as ribbons beside each other, its fixes, and the cursor with its 95 %. */
 export class GeorefMap {
   readonly element = element('section', { class: 'georef-map', 'aria-label': 'Map' });
@@ -175,7 +186,7 @@ export class GeorefMap {
     const best = this.journey.hypotheses[0];
     const shared = new Set(best?.tracks.map((t) => t.id));
     for (const h of [...this.journey.hypotheses].reverse()) {
-      const pieces = h === best ? [part(h, h.from, h.to)] : h.tracks.filter((t) => !shared.has(t.id)).map((t) => part(h, t.from, t.to));
+      const pieces = h === best ? [part(h, h.from, h.to)] : spans(h.tracks.filter((t) => !shared.has(t.id))).map((t) => part(h, t.from, t.to));
       for (const piece of pieces) if (piece.length > 1) this.ribbons.addFeature(this.ribbon(h, piece, h === best));
     }
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Journey, Stretch } from './contract';
-import { scaleWidth } from './strips';
+import { rightPadding, scaleWidth } from './strips';
 import { element, percent } from './text';
 import { css } from './theme';
 
@@ -42,7 +42,7 @@ export class ProbabilityStrip {
     this.pieces = shares(journey.stretches, ends, first, last);
     this.canvas.addEventListener('click', (event) => {
       const { left, width } = this.canvas.getBoundingClientRect();
-      go(this.from + ((event.clientX - left - scaleWidth) / (width - scaleWidth - 8)) * (this.to - this.from));
+      go(this.from + ((event.clientX - left - scaleWidth) / (width - scaleWidth - rightPadding)) * (this.to - this.from));
     });
   }
 
@@ -59,10 +59,10 @@ export class ProbabilityStrip {
     const ctx = this.canvas.getContext('2d')!;
     ctx.scale(ratio, ratio);
     const [top, bottom] = [4, height - 5];
-    const x = (place: number) => scaleWidth + ((place - from) / (to - from)) * (width - scaleWidth - 8);
+    const x = (place: number) => scaleWidth + ((place - from) / (to - from)) * (width - scaleWidth - rightPadding);
     const y = (p: number) => bottom - p * (bottom - top);
     ctx.beginPath();
-    ctx.rect(scaleWidth, 0, width - scaleWidth - 8, height);
+    ctx.rect(scaleWidth, 0, width - scaleWidth - rightPadding, height);
     ctx.save();
     ctx.clip();
     for (const piece of this.pieces) if (piece.to > from && piece.from < to) this.drawPiece(ctx, piece, x, y);

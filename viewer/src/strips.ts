@@ -14,6 +14,7 @@ export interface StripEvents {
 export const labelWidth = 172;
 export const valueWidth = 116;
 export const scaleWidth = 44;
+export const rightPadding = 26; // of a drawing: half of a label on the last tick
 const axisHeight = 26;
 
 /** A value at the cursor, with its standard deviation or NaN. */
@@ -102,7 +103,7 @@ export class Strip {
     return {
       width,
       height,
-      padding: [3, 26, 3, 0],
+      padding: [3, rightPadding, 3, 0],
       legend: { show: false },
       cursor: { y: false, drag: { x: true, y: false, setScale: false }, points: { show: false } },
       scales: {
@@ -290,7 +291,7 @@ export class Strip {
   /** Half a label would be cut off. */
   private nearEdge(u: uPlot, y: number): boolean {
     const at = u.valToPos(y, 'y');
-    return at < 4 || at > u.over.clientHeight - 4;
+    return at < 4 || at > u.bbox.height / devicePixelRatio - 4;
   }
 
   /** A tick whose label would stand under that of a jump. */

@@ -3,7 +3,7 @@
 import path from 'node:path';
 import { browse, loaded, open, serve } from './support.mjs';
 
-const [output, demo, line] = process.argv.slice(2);
+const [output, demo, line, harbour, brussels] = process.argv.slice(2);
 const browser = await browse();
 
 async function shot(name, result, options, act = async () => {}) {
@@ -36,4 +36,7 @@ await shot('survey-versines', demo, { theme: 'light' }, async (page) => {
   await page.click('[data-tab=checks]');
   await loaded(page, 'checks');
 });
+// Where the recordings of Brussels are not on this machine their picture stays as it is.
+await shot('georef-review', harbour, { theme: 'dark' }, press('n', 'n', '2'));
+if (brussels) await shot('georef-brussels', brussels, { theme: 'light' });
 await browser.close();
