@@ -52,7 +52,7 @@ export class ExceedanceTable {
       const link = element('button', { type: 'button' }, `${nested ? '↳ ' : ''}${axis.text(exceedance.peakAt)}`);
       if (nested) row.classList.add('nested');
       link.addEventListener('click', () => this.goTo(this.rows.findIndex((r) => r.row === row)));
-      row.append(element('th', { scope: 'row', title: `${exceedance.level}, drawn as ${style.name}` }, `${style.glyph} ${exceedance.level}`));
+      row.append(element('th', { scope: 'row', title: `${exceedance.level}, drawn as ${style.name}` }, `${style.glyph} ${exceedance.level.length > 4 ? `${exceedance.level.slice(0, 3)}.` : exceedance.level}`));
       row.insertCell().append(link);
       row.insertCell().textContent = exceedance.title;
       row.cells[2].title = exceedance.note;

@@ -2,7 +2,8 @@
 import uPlot from 'uplot';
 import type { Axis } from './axis';
 import type { Exceedance, Series, StripInfo } from './contract';
-import { lowerBound, type SeriesStore } from './pyramid';
+import { drawBand, drawLine, drawValues, type Frame } from './draw';
+import type { SeriesStore } from './pyramid';
 import { minus } from './text';
 import { css, limitStyle } from './theme';
 
@@ -29,22 +30,25 @@ export interface Extras {
   companion: SeriesStore | null; // another quantity on its own scale
 }
 
-const column = (a: Float32Array | null, n: number): (number | null)[] => {
-  const out = new Array<number | null>(n);
-  // uPlot's sign for a gap is null; NaN would be bridged.
-  for (let i = 0; i < n; ++i) out[i] = a !== null && a[i] === a[i] ? a[i] : null;
-  return out;
-};
+/** What is on the strip now. */
+interface Drawn {
+  mine: Series;
+  compare: Series | null;
+  companion: Series | null;
+}
 
-/** The other series' values at this one's places; null where it has none near. */
-function sampled(other: Series | null, x: Float64Array, near: number): (number | null)[] {
-  const out = new Array<number | null>(x.length).fill(null);
-  if (!other) return out;
-  for (let i = 0; i < x.length; ++i) {
-    const k = Math.min(lowerBound(other.x, x[i]), other.x.length - 1);
-    if (k >= 0 && Math.abs(other.x[k] - x[i]) <= near && other.min[k] === other.min[k]) out[i] = other.min[k];
+/** Smallest and largest value, of the 95 % band where there is one. */
+function extent(...all: (Series | null)[]): [number, number] {
+  let [low, high] = [Infinity, -Infinity];
+  for (const series of all) {
+    if (!series) continue;
+    const [lower, upper] = [series.lower ?? series.min, series.upper ?? series.max];
+    for (let i = 0; i < lower.length; ++i) {
+      if (lower[i] < low) low = lower[i];
+      if (upper[i] > high) high = upper[i];
+    }
   }
-  return out;
+  return high >= low ? [low, high] : [0, 0];
 }
 
 /** One line of the strip chart: label on the left, drawing, value at the cursor on the right. */
@@ -55,6 +59,7 @@ export class Strip {
   private readonly box: HTMLElement;
   private plot: uPlot | null = null;
   private limitsScale = false;
+  private drawn: Drawn | null = null;
   private turn = 0;
 
   constructor(
@@ -90,14 +95,10 @@ export class Strip {
   build(width: number, height: number, from: number, to: number, last: boolean): void {
     this.plot?.destroy();
     this.element.style.height = `${height + (last ? axisHeight : 0)}px`;
-    this.plot = new uPlot(this.options(width, height + (last ? axisHeight : 0) - 1, from, to, last), [[], [], [], [], [], [], []] as unknown as uPlot.AlignedData, this.box);
+    this.plot = new uPlot(this.options(width, height + (last ? axisHeight : 0) - 1, from, to, last), [[from, to], [null, null]], this.box);
   }
 
   private options(width: number, height: number, from: number, to: number, last: boolean): uPlot.Options {
-    const line = css('--line');
-    const bare = { points: { show: false }, spanGaps: false };
-    const hidden = { ...bare, stroke: 'transparent', width: 0 };
-    const drawn = { ...bare, stroke: line, width: 1 };
     const ticks = { stroke: css('--muted'), font: '12px system-ui, sans-serif', ticks: { show: false } };
     const grid = { stroke: css('--grid'), width: 1 };
     return {
@@ -108,14 +109,9 @@ export class Strip {
       cursor: { y: false, drag: { x: true, y: false, setScale: false }, points: { show: false } },
       scales: {
         x: { time: false, min: from, max: to },
-        y: { range: (_u, low, high) => this.range(low, high) },
-        other: { range: (_u, low, high) => padded(low ?? -1, high ?? 1, 1) },
+        y: { auto: false, range: [-1, 1] },
       },
-      series: [{}, hidden, hidden, drawn, drawn, { ...bare, stroke: css('--compare'), width: 1, dash: [4, 3] }, { ...bare, scale: 'other', stroke: css('--companion'), width: 1, dash: [6, 3] }],
-      bands: [
-        { series: [2, 1], fill: css('--band') },
-        { series: [4, 3], fill: line },
-      ],
+      series: [{}, { paths: () => null, points: { show: false } }], // drawn by drawSeries
       axes: [
         {
           ...ticks,
@@ -129,7 +125,7 @@ export class Strip {
       ],
       hooks: {
         drawClear: [(u) => this.drawLimits(u)],
-        draw: [(u) => this.drawMarks(u, last)],
+        draw: [(u) => this.drawSeries(u), (u) => this.drawMarks(u, last)],
         setCursor: [(u) => u.cursor.event && u.cursor.left! >= 0 && this.events.cursor(u.posToVal(u.cursor.left!, 'x'))],
         setSelect: [
           (u) => {
@@ -146,16 +142,16 @@ export class Strip {
   async show(from: number, to: number): Promise<void> {
     const turn = ++this.turn;
     if (this.stores.every((s) => s.loaded)) {
-      this.set(this.store.now(from, to), this.extras.compare?.now(from, to) ?? null, this.extras.companion?.now(from, to) ?? null, from, to);
+      this.set({ mine: this.store.now(from, to), compare: this.extras.compare?.now(from, to) ?? null, companion: this.extras.companion?.now(from, to) ?? null }, from, to);
       return;
     }
     const [mine, compare, companion] = await Promise.all([this.store, this.extras.compare, this.extras.companion].map((s) => s?.fetch(from, to) ?? null));
-    if (turn === this.turn) this.set(mine!, compare, companion, from, to);
+    if (turn === this.turn) this.set({ mine: mine!, compare, companion }, from, to);
   }
 
   setLimitsScale(on: boolean): void {
     this.limitsScale = on;
-    this.plot?.redraw(true, true);
+    if (this.plot && this.drawn) this.set(this.drawn, this.plot.scales.x.min!, this.plot.scales.x.max!);
   }
 
   /** The value beside the strip with its 95 % interval and the limit it is over; returns what to say. */
@@ -205,21 +201,18 @@ export class Strip {
     this.plot = null;
   }
 
-  private set(mine: Series, compare: Series | null, companion: Series | null, from: number, to: number): void {
+  private set(drawn: Drawn, from: number, to: number): void {
     if (!this.plot) return;
-    const n = mine.x.length;
-    const low = column(mine.min, n);
-    const near = n > 1 ? (mine.x[n - 1] - mine.x[0]) / (n - 1) : 1;
-    const data = [mine.x, column(mine.lower, n), column(mine.upper, n), low, mine.min === mine.max ? low : column(mine.max, n), sampled(compare, mine.x, near), sampled(companion, mine.x, near)];
-    this.plot.batch(() => {
-      this.plot!.setData(data as unknown as uPlot.AlignedData, false);
-      this.plot!.setScale('x', { min: from, max: to });
+    this.drawn = drawn;
+    const [min, max] = this.range(...extent(drawn.mine, drawn.compare));
+    this.plot.batch((plot: uPlot) => {
+      plot.setScale('x', { min: from, max: to });
+      plot.setScale('y', { min, max });
     });
   }
 
-  private range(low: number | null, high: number | null): [number, number] {
-    let a = low ?? 0;
-    let b = high ?? 0;
+  private range(low: number, high: number): [number, number] {
+    let [a, b] = [low, high];
     // Noise is not blown up to look like a fault: at least a few times the last digit shown.
     const least = 20 * 10 ** -this.info.digits;
     if (this.limitsScale && this.info.limits.length > 0) {
@@ -229,6 +222,36 @@ export class Strip {
       if (highest !== null) b = Math.max(b, 1.05 * highest);
     }
     return padded(a, b, least);
+  }
+
+  private drawSeries(u: uPlot): void {
+    if (!this.drawn) return;
+    const { mine, compare, companion } = this.drawn;
+    const { ctx, bbox } = u;
+    const { x, y } = u.scales;
+    const frame: Frame = { left: bbox.left, top: bbox.top, width: bbox.width, height: bbox.height, from: x.min!, to: x.max!, low: y.min!, high: y.max! };
+    const ratio = devicePixelRatio;
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+    ctx.clip();
+    ctx.lineJoin = 'bevel';
+    ctx.fillStyle = css('--band');
+    drawBand(ctx, frame, mine);
+    ctx.fillStyle = ctx.strokeStyle = css('--line');
+    drawValues(ctx, frame, mine, ratio);
+    if (compare) {
+      ctx.strokeStyle = css('--compare');
+      ctx.setLineDash([4 * ratio, 3 * ratio]);
+      drawLine(ctx, frame, compare.x, compare.min, ratio);
+    }
+    if (companion) {
+      const [low, high] = padded(...extent({ ...companion, lower: null, upper: null }), 1);
+      ctx.strokeStyle = css('--companion');
+      ctx.setLineDash([6 * ratio, 3 * ratio]);
+      drawLine(ctx, { ...frame, low, high }, companion.x, companion.min, ratio);
+    }
+    ctx.restore();
   }
 
   private drawLimits(u: uPlot): void {

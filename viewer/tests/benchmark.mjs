@@ -8,7 +8,8 @@ import { browse, loaded, open, serve } from './support.mjs';
 
 const count = Number(process.argv[2] ?? 400001);
 const folder = mkdtempSync(path.join(os.tmpdir(), 'versine-bench-'));
-const only = columns.filter((c) => c !== 'cross_level_mm');
+// Twelve strips on the first tab: with two more bases of twist.
+const only = [...columns.filter((c) => !['cross_level_mm', 'gradient_permille', 'height_axis_m'].includes(c)), 'twist_6m_mm_per_m', 'twist_9m_mm_per_m'];
 writeResult(path.join(folder, 'result'), { count, only });
 const size = statSync(path.join(folder, 'result', 'geometry.csv')).size;
 const browser = await browse();
@@ -33,7 +34,7 @@ function cpu(root) {
   return all.filter((p) => below.has(p.id)).reduce((sum, p) => sum + p.ticks, 0) / 100;
 }
 
-const rounds = { serving: [], 'serving, CPU': [], interactive: [], 'interactive, CPU': [], loaded: [] };
+const rounds = { serving: [], 'serving, CPU': [], 'empty page, CPU': [], interactive: [], 'interactive, CPU': [], loaded: [] };
 let page;
 let server;
 for (let round = 0; round < 5; ++round) {
@@ -43,6 +44,11 @@ for (let round = 0; round < 5; ++round) {
   server = await serve(path.join(folder, 'result'));
   rounds.serving.push(performance.now() - start);
   rounds['serving, CPU'].push(1000 * cpu(server.child.pid));
+  const start0 = cpu(process.pid);
+  const empty = await browser.newPage();
+  await empty.goto('about:blank');
+  rounds['empty page, CPU'].push(1000 * (cpu(process.pid) - start0));
+  await empty.close();
   const before = cpu(process.pid);
   page = await open(browser, server);
   rounds['interactive, CPU'].push(1000 * (cpu(process.pid) - before));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures for docs/images: node screenshots.mjs OUTPUT RESULT...; `make screenshots` makes the results first.
+// Pictures for docs/images: node screenshots.mjs OUTPUT DEMO LINE; `make screenshots` makes the results first.
 import path from 'node:path';
 import { browse, loaded, open, serve } from './support.mjs';
 
@@ -30,12 +30,8 @@ await shot('survey-light-jump', line, { theme: 'light' }, async (page) => {
   await press('-', '-')(page);
 });
 await shot('survey-red', line, { theme: 'red' }, press('n', 'n'));
-await shot('survey-whole', line, { theme: 'dark' }, press('f'));
+await shot('survey-whole', line, { theme: 'light', width: 1280, height: 720 }, press('f'));
 await shot('survey-demo', demo, { theme: 'light' }, press('f'));
-await shot('survey-versines', demo, { theme: 'light' }, async (page) => {
-  await page.click('[data-tab=checks]');
-  await loaded(page, 'checks');
-});
 // Where the recordings of Brussels are not on this machine their picture stays as it is.
 await shot('georef-review', harbour, { theme: 'dark' }, press('n', 'n', '2'));
 if (brussels) await shot('georef-brussels', brussels, { theme: 'light' });
