@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The survey screen in a real browser, on a simulated survey and on fixtures.
 import assert from 'node:assert/strict';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { cpSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
@@ -87,6 +87,28 @@ test('every value is that of the file, with its 95 % interval', async () => {
       assert.equal(row[2 + k], `${(innovation.toFixed(1) === '-0.0' ? '0.0' : innovation.toFixed(1)).replace('-', '−')} ± ${(1.96 * deviation).toFixed(1)}`);
     }
   }
+  await page.context().close();
+});
+
+test('without track geometry: the trajectory over time, as in trajectory.csv', async () => {
+  cpSync(place('survey'), place('trajectory'), { recursive: true });
+  rmSync(place('trajectory', 'geometry.csv'));
+  const [head, ...rows] = readFileSync(place('trajectory', 'trajectory.csv'), 'utf8').trim().split('\n').filter((l) => !l.startsWith('#')).map((l) => l.split(','));
+  const row = rows[9000];
+  const at = (name) => Number(row[head.indexOf(name)]);
+  const x = Number(row[0]) - Number(rows[0][0]);
+  const page = await open(browser, await view(place('trajectory')), { hash: `from=100&to=1900&at=${x.toFixed(2)}` });
+  await loaded(page);
+  assert.match(await page.textContent('.verdict'), /TRAJECTORY ONLY/);
+  for (const [strip, v, s] of [['height_m', at('height_m'), at('sigma_down_m')], ['roll_deg', at('roll_deg'), NaN], ['speed_mps', Math.hypot(at('velocity_north_mps'), at('velocity_east_mps')), NaN]]) {
+    const [shown, deviation] = await exact(page, strip);
+    assert.ok(Math.abs(shown - v) <= 1e-6 * Math.max(1, Math.abs(v)), `${strip}: ${shown} is not ${v}`);
+    if (Number.isFinite(s)) assert.ok(Math.abs(deviation - s) <= 1e-6, `${strip}: sigma ${deviation} is not ${s}`);
+  }
+  assert.match(await km(page), /^0:\d\d:\d\d$/);
+  await goTo(page, '0:10:00');
+  assert.equal(await km(page), '0:10:00');
+  assert.deepEqual(page.faults, []);
   await page.context().close();
 });
 
