@@ -32,10 +32,18 @@ Expected<GeorefConfig> read_job(const std::string& text, const fs::path& path) {
 Expected<std::string> config_digest(const GeorefConfig& config) {
   const auto map = io::describe_input("network", config.network.written, config.network.path);
   if (!map) return tl::unexpected(map.error());
+  std::string digests = map->sha256;
+  for (const char* ending : {".dbf", ".shx", ".prj", ".cpg"}) {  // a Shapefile is several files
+    fs::path part = config.network.path;
+    if (part.extension() != ".shp" || !fs::exists(part.replace_extension(ending))) continue;
+    const auto more = io::describe_input("network", part.string(), part);
+    if (!more) return tl::unexpected(more.error());
+    digests += more->sha256;
+  }
   GeorefConfig c = config;
   c.network = {};
   c.recordings.clear();
-  return io::sha256(config_json([&](ConfigVisitor& v) { describe(v, c); }) + "\n" + map->sha256);
+  return io::sha256(config_json([&](ConfigVisitor& v) { describe(v, c); }) + "\n" + digests);
 }
 
 bool is_recording(const fs::path& path) {
@@ -119,12 +127,15 @@ Outcome<batch::Job> batch_job(const fs::path& job) {
   const auto path = fs::absolute(job);
   const auto config = read_job(*text, path);
   if (!config) return failure(Exit::usage, config.error());
-  if (!config->monitoring.empty()) {
+  // A unit is its input's content: what names single recordings cannot be part of all units.
+  for (const auto& [key, present] :
+       {std::pair("monitoring", !config->monitoring.empty()), std::pair("constraints", !config->constraints.empty())}) {
+    if (!present) continue;
     return failure(Exit::usage, {.file = job.string(),
-                                 .field = "monitoring",
-                                 .found = "files of single vehicles",
+                                 .field = key,
+                                 .found = "tables that belong to single recordings",
                                  .expected = "a job without them",
-                                 .advice = "stamp monitoring files with 'versine georef', one vehicle a job"});
+                                 .advice = "give such recordings a job of their own ('versine georef')"});
   }
   const auto map = load_map(*config);
   if (!map) return failure(Exit::usage, map.error());

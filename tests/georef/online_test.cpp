@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <numeric>
 #include <random>
 
 #include "versine/network/build.hpp"
@@ -57,12 +58,12 @@ struct Truth {
 
 /// Stands, runs `far` metres along the path, stands, and comes back `back` metres. IMU 100 Hz, GNSS 5 Hz.
 Truth drive(const Map& map, const network::Path& tracks, double far, double back, double sigma, unsigned seed,
-            double gap_from = 1e9, double gap_to = 1e9) {
+            double gap_from = 1e9, double gap_to = 1e9, double from = 30.0) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
   const network::PathCoordinates path(map.network, tracks);
   Truth out;
-  double d = 30.0, v = 0.0, still = 0.0, goal = far;
+  double d = from, v = 0.0, still = 0.0, goal = far;
   Eigen::Vector2d colour(normal(random), normal(random));
   const double bias = 0.04 * normal(random);
   int leg = 0;
@@ -150,8 +151,7 @@ TEST(Online, LadderIsDecidedRightSoonAndHonestly) {
       const double e = error_along(*map, path, truth, p);
       square += e * e, ++positions;
       inside += std::abs(e) < 1.96 * p.sigma ? 1 : 0;
-      const bool right =
-          std::any_of(path.begin(), path.end(), [&](auto& t) { return t.track == p.track.track; });
+      const bool right = std::any_of(path.begin(), path.end(), [&](auto& t) { return t.track == p.track.track; });
       on_track += right ? 1 : 0;
       brier += (p.probability - (right ? 1.0 : 0.0)) * (p.probability - (right ? 1.0 : 0.0));
     }
@@ -194,6 +194,42 @@ TEST(Online, SilenceOverTheLadder) {
   ASSERT_FALSE(out.positions.empty());
   EXPECT_EQ(map->network.tracks[out.positions.back().track.track].id, "p4");
   EXPECT_EQ(out.restarts, 0u);
+}
+
+TEST(Online, ADayOfShuttlingCostsNoMoreAnHour) {
+  const auto map = ladder(6);
+  const auto path = path_to(*map, "p4");
+  // From the approach onto a platform track and back to the same place, standing at both ends: joined without a seam.
+  const auto cycle = drive(*map, path, 1200.0, 700.0, 0.8, 11, 1e9, 1e9, 500.0).recording;
+  const Duration length = cycle.imu.back().time - cycle.imu.front().time + Duration{10'000'000};
+  OnlineGeoreferencer live(*map, {});
+  std::vector<double> seconds;
+  std::size_t lost = 0;
+  const int cycles = 300;
+  for (int c = 0; c < cycles; ++c) {
+    const auto begin = std::clock();
+    const Duration shift{length.ns * c};
+    std::optional<OnlinePosition> last;
+    std::size_t imu = 0;
+    for (auto fix : cycle.gnss) {
+      for (; imu < cycle.imu.size() && !(fix.time < cycle.imu[imu].time); ++imu) {
+        auto sample = cycle.imu[imu];
+        sample.time = sample.time + shift;
+        live.add(sample, false);
+      }
+      fix.time = fix.time + shift;
+      last = live.add(fix);
+    }
+    lost += last && map->network.tracks[last->track.track].id == "approach" ? 0 : 1;
+    static_cast<void>(live.take_decisions());
+    seconds.push_back(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+  }
+  const auto sum = [&](int from, int to) { return std::accumulate(seconds.begin() + from, seconds.begin() + to, 0.0); };
+  fmt::print("shuttling for {:.0f} h: {:.2f} s of processor time, last third over first {:.2f}\n",
+             length.seconds() * cycles / 3600.0, sum(0, cycles), sum(200, 300) / sum(0, 100));
+  EXPECT_EQ(lost, 0u);
+  EXPECT_EQ(live.restarts(), 0u);
+  EXPECT_LT(sum(200, 300), 2.0 * sum(0, 100));
 }
 
 TEST(Online, MuchFasterThanTime) {

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "versine/app/batch.hpp"
 
+#include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <thread>
 
 #include "command.hpp"
@@ -38,9 +40,23 @@ std::optional<std::string> environment(std::initializer_list<const char*> names)
   return std::nullopt;
 }
 
+/// A variable that is there and is no number: a shard done twice, or never, if it went unnoticed.
+struct BadVariable : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 std::optional<int> number_in(std::initializer_list<const char*> names) {
-  const auto text = environment(names);
-  return text ? std::optional(std::atoi(text->c_str())) : std::nullopt;
+  for (const char* name : names) {
+    const auto text = environment({name});
+    if (!text) continue;
+    int value = 0;
+    const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), value);
+    if (error != std::errc() || end != text->data() + text->size()) {
+      throw BadVariable(std::string(name) + ": found '" + *text + "', expected a whole number");
+    }
+    return value;
+  }
+  return std::nullopt;
 }
 
 int exit_code(Exit exit) {
@@ -282,6 +298,9 @@ CLI::App* add_verb(CLI::App& batch, const std::shared_ptr<Options>& o, int& exit
   c->callback([o, &exit, verb] {
     try {
       exit = verb(*o);
+    } catch (const BadVariable& e) {
+      std::fprintf(stderr, "versine: %s\n", e.what());
+      exit = exit_code(Exit::usage);
     } catch (const std::exception& e) {
       std::fprintf(stderr, "versine: internal error: %s\n", e.what());
       exit = exit_code(Exit::failed);
