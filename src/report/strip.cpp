@@ -12,7 +12,7 @@ namespace versine::report {
 
 namespace {
 
-constexpr double bin = 0.35, band_bin = 1.0;  // mm
+constexpr double bin = 0.35, band_bin = 2.0;  // mm
 constexpr std::uint32_t grid = 0xe3e7eb, muted = 0x57606a, ink = 0x1b1f24;
 
 struct Scale {

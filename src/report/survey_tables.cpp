@@ -303,7 +303,10 @@ void add_adjustment(Pages& pages, const SurveyReport& r, const Texts& t) {
   for (const std::string& column : r.adjustment.header) {
     table.columns.push_back({t.quantity(column), column == "reference_rail" ? Anchor::start : Anchor::end});
   }
-  for (std::size_t i = 0; i < r.adjustment.rows.size(); ++i) {
+  // Ten kilometres have 4000 rows of 2.5 m: thirty pages that nobody leafs through.
+  const std::size_t every = r.adjustment.rows.size() / 2500 + 1;
+  if (every > 1) table.notes.push_back(fmt::format(fmt::runtime(t("adjustment.thinned")), every));
+  for (std::size_t i = 0; i < r.adjustment.rows.size(); i += every) {
     auto& row = table.rows.emplace_back();
     for (std::size_t k = 0; k < r.adjustment.rows[i].size(); ++k) {
       const bool mileage = k < n && r.adjustment.header[k] == "mileage_m";

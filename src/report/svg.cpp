@@ -11,7 +11,7 @@ namespace versine::report {
 
 namespace {
 
-constexpr double per_mm = 50.0;  // units of the viewBox
+constexpr double per_mm = 20.0;  // units of the viewBox
 
 long unit(double mm) {
   return std::lround(mm * per_mm);
@@ -35,23 +35,22 @@ class Writer {
     }
     if (p.pen) {
       print(" stroke=\"#{:06x}\" stroke-width=\"{}\"", p.pen->colour, std::max(1L, unit(p.pen->width)));
-      if (p.pen->dash == Dash::dashed) print(" stroke-dasharray=\"75 40\"");
-      if (p.pen->dash == Dash::dotted) print(" stroke-dasharray=\"15 30\"");
+      if (p.pen->dash == Dash::dashed) print(" stroke-dasharray=\"30 16\"");
+      if (p.pen->dash == Dash::dotted) print(" stroke-dasharray=\"6 12\"");
     }
     print("/>");
   }
 
   void operator()(const TextItem& t) {
-    // Neighbours of one style share a group, which halves the size of tables.
+    // Neighbours of one style share a group, which says only what differs from the groups around it.
     if (!run_ || !same(*run_, t.style)) {
       close_run();
-      print("<g font-size=\"{}\" fill=\"#{:06x}\"", unit(t.style.size), t.style.colour);
-      if (t.style.anchor != Anchor::start) {
-        print(" text-anchor=\"{}\"", t.style.anchor == Anchor::end ? "end" : "middle");
+      if (bases_.empty() || !same(bases_.back(), t.style)) {
+        print("<g");
+        print_style(t.style, bases_.empty() ? nullptr : &bases_.back());
+        print(">");
+        run_ = t.style;
       }
-      if (t.style.bold) print(" font-weight=\"bold\"");
-      print(">");
-      run_ = t.style;
     }
     if (t.style.upright) {
       print("<text x=\"{}\" y=\"{}\"", unit(t.at.x), unit(t.at.y));
@@ -67,7 +66,7 @@ class Writer {
     // A nested picture cuts at its edges without needing a name.
     print("<svg x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" viewBox=\"{0} {1} {2} {3}\">", unit(c.box.x),
           unit(c.box.y), unit(c.box.width), unit(c.box.height));
-    ends_.push_back({"</svg>", false});
+    ends_.push_back({"</svg>"});
   }
 
   void operator()(const Group& g) {
@@ -76,8 +75,12 @@ class Writer {
     if (!g.id.empty()) print(" id=\"{}\"", escaped(g.id));
     if (!g.role.empty()) print(" role=\"{}\"", g.role);
     if (!g.label.empty()) print(" aria-label=\"{}\"", escaped(g.label));
+    if (g.style) {
+      print_style(*g.style, nullptr);
+      bases_.push_back(*g.style);
+    }
     print(">");
-    ends_.push_back({"</g>", g.role == "row"});
+    ends_.push_back({"</g>", g.role == "row", g.style.has_value()});
     in_row_ |= g.role == "row";
   }
 
@@ -86,6 +89,7 @@ class Writer {
     if (ends_.empty()) return;
     print("{}", ends_.back().tag);
     if (ends_.back().row) in_row_ = false;
+    if (ends_.back().styled) bases_.pop_back();
     ends_.pop_back();
   }
 
@@ -103,6 +107,16 @@ class Writer {
   static bool same(const TextStyle& a, const TextStyle& b) {
     return a.size == b.size && a.anchor == b.anchor && a.bold == b.bold && a.colour == b.colour &&
            a.upright == b.upright;
+  }
+
+  void print_style(const TextStyle& s, const TextStyle* base) {
+    if (base == nullptr || base->size != s.size) print(" font-size=\"{}\"", unit(s.size));
+    if (base == nullptr || base->colour != s.colour) print(" fill=\"#{:06x}\"", s.colour);
+    if (base == nullptr ? s.anchor != Anchor::start : s.anchor != base->anchor) {
+      constexpr const char* anchors[] = {"start", "middle", "end"};
+      print(" text-anchor=\"{}\"", anchors[static_cast<int>(s.anchor)]);
+    }
+    if (s.bold != (base != nullptr && base->bold)) print(" font-weight=\"{}\"", s.bold ? "bold" : "normal");
   }
 
   void close_run() {
@@ -140,10 +154,11 @@ class Writer {
   fmt::memory_buffer& out_;
   struct Close {
     const char* tag;
-    bool row;
+    bool row = false, styled = false;
   };
   std::vector<Close> ends_;
   std::optional<TextStyle> run_;
+  std::vector<TextStyle> bases_;
   bool in_row_ = false, first_ = false;
 };
 

@@ -121,7 +121,6 @@ void draw_row(const Table& t, const Layout& l, const Row& row, const std::vector
     }
   }
   d.end();
-  d.line({x, y + row.height}, {x + l.left.back() + l.width.back(), y + row.height}, {rule, 0.1, Dash::solid});
 }
 
 double draw_title(const Table& t, Drawing& d, const Box& box) {
@@ -152,15 +151,21 @@ double draw_table(const Table& t, Drawing*& page, Box box, const std::function<B
   const double pitch = (box.width + gap) / blocks;
   int block = 0;
   double lowest = top;
-  page->begin(Group{"table", t.title, {}});
+  std::vector<Point> rules;  // between rows, drawn at once
+  const auto close = [&] {
+    page->polyline(std::move(rules), {rule, 0.1, Dash::solid});
+    rules.clear();
+    page->end();
+  };
+  page->begin(Group{"table", t.title, {}, TextStyle{.size = layout.size, .anchor = Anchor::end}});
   double y = draw_head(t, layout, *page, box.x, top);
   for (const auto& cells : t.rows) {
     const Row row = measure(t, layout, cells);
     if (y + row.height > box.bottom()) {
       if (++block == blocks) {
-        page->end();
+        close();
         box = next(page);
-        page->begin(Group{"table", t.title, {}});
+        page->begin(Group{"table", t.title, {}, TextStyle{.size = layout.size, .anchor = Anchor::end}});
         top = box.y;
         block = 0;
         lowest = top;
@@ -169,9 +174,11 @@ double draw_table(const Table& t, Drawing*& page, Box box, const std::function<B
     }
     draw_row(t, layout, row, cells, *page, box.x + block * pitch, y);
     y += row.height;
+    const double left = box.x + block * pitch;
+    rules.insert(rules.end(), {{left, y}, {left + layout.left.back() + layout.width.back(), y}, pen_up});
     lowest = std::max(lowest, y);
   }
-  page->end();
+  close();
   return lowest;
 }
 

@@ -6,7 +6,7 @@
 
 namespace versine::report {
 
-/// The drawing as an `<svg>` element: no script, no external reference. Coordinates are whole fiftieths of a
+/// The drawing as an `<svg>` element: no script, no external reference. Coordinates are whole twentieths of a
 /// millimetre, lines relative, which keeps a page of strips below 100 kB. `standalone` adds the size for a file of its
 /// own.
 [[nodiscard]] std::string to_svg(const Drawing& drawing, bool standalone = false);
