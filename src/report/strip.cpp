@@ -203,12 +203,12 @@ void draw_axis(Drawing& d, const Box& plot, const StripAxis& axis) {
   for (double s = axis.from; s <= axis.to + 1e-6; s += walk) {
     const double p = axis.posted(s), k = std::round(p / step);
     if (std::abs(p - k * step) > 0.5 * walk + 1e-9) continue;
-    const double x = at(s + (axis.posted(s + 0.01) >= p ? k * step - p : p - k * step));
+    const double place = s + (axis.posted(s + 0.01) >= p ? k * step - p : p - k * step), x = at(place);
     if (x - last < 15.0 || x > plot.right() + 0.1) continue;
     last = x;
     d.line({x, plot.y}, {x, plot.bottom()}, {0xeceff2, 0.12, Dash::solid});
     d.line({x, plot.bottom()}, {x, plot.bottom() + 1.0}, {muted, 0.15, Dash::solid});
-    d.text({x, plot.bottom() + 3.6}, axis.label(s), {.size = 2.3, .anchor = Anchor::middle, .colour = ink});
+    d.text({x, plot.bottom() + 3.6}, axis.label(place), {.size = 2.3, .anchor = Anchor::middle, .colour = ink});
   }
   for (const auto& jump : axis.jumps) {
     if (jump.at < axis.from || jump.at > axis.to) continue;
