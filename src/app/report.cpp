@@ -47,7 +47,7 @@ struct Made {
   std::vector<std::string> formats;
 };
 
-Expected<Made> make(const std::filesystem::path& result, const ReportRequest& request) {
+Expected<Made> make_from(const std::filesystem::path& result, const ReportRequest& request) {
   const auto run = read_run(result);
   if (!run) return tl::unexpected(run.error());
   const auto settings = run->value("/settings/report"_json_pointer, nlohmann::ordered_json::object());
@@ -86,6 +86,17 @@ Expected<Made> make(const std::filesystem::path& result, const ReportRequest& re
                  .advice = "there is no report of this kind of job"});
   }
   return out;
+}
+
+Expected<Made> make(const std::filesystem::path& result, const ReportRequest& request) {
+  try {
+    return make_from(result, request);
+  } catch (const nlohmann::json::exception& error) {  // a number where a table should be: not as Versine writes it
+    return fail({.file = (result / "run.json").string(),
+                 .found = error.what(),
+                 .expected = "the files of one result as Versine writes them",
+                 .advice = "run the job again; the files were changed, or are of another version"});
+  }
 }
 
 }  // namespace

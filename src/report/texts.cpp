@@ -38,6 +38,15 @@ Expected<Map> parse(std::string_view text, const std::string& name) {
   return out;
 }
 
+/// The places for numbers, "{}{:.2f}" of "{} of {:.2f}".
+std::string places(const std::string& text) {
+  std::string out;
+  for (auto i = text.find('{'); i != std::string::npos; i = text.find('{', i + 1)) {
+    out += text.substr(i, text.find('}', i) - i + 1);
+  }
+  return out;
+}
+
 /// The first key that only one of the two has; phrases are the translation's own business.
 Expected<void> same_keys(const Map& ours, const Map& theirs, const std::string& name) {
   for (const auto& [key, text] : ours) {
@@ -52,6 +61,13 @@ Expected<void> same_keys(const Map& ours, const Map& theirs, const std::string& 
                    .found = "a text that no report uses",
                    .expected = "the keys of data/texts/en.toml",
                    .advice = "remove it or mend its name"});
+    }
+    if (places(text) != places(ours.at(key))) {
+      return fail({.file = name,
+                   .field = key,
+                   .found = "'" + text + "'",
+                   .expected = "the places " + places(ours.at(key)) + ", in this order",
+                   .advice = "as in '" + ours.at(key) + "'"});
     }
   }
   return {};

@@ -108,6 +108,8 @@ TEST_F(ReportOfFolder, BadFoldersAreToldWithTheirCure) {
   EXPECT_THAT(refused(), HasSubstr("cut short"));
   put("run.json", R"({"format": "versine run 9"})");
   EXPECT_THAT(refused(), HasSubstr("versine run 9"));
+  put("run.json", run(R"({"geometry": "none", "innovations": 7})"));
+  EXPECT_THAT(refused(), HasSubstr("of another version"));
   put("run.json", run("{}", "simulate"));
   EXPECT_THAT(refused(), HasSubstr("'simulate'"));
   put_geometry();

@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::ptrdiff_t places(const std::string& text) {
+std::ptrdiff_t braces(const std::string& text) {
   return std::count(text.begin(), text.end(), '{');
 }
 
@@ -26,7 +26,7 @@ TEST(Texts, EveryLanguageHasEveryKeyWithTheSamePlaces) {
     ASSERT_EQ(texts->all().size(), english.all().size());
     for (const auto& [key, text] : texts->all()) {
       EXPECT_FALSE(text.empty()) << language << " " << key;
-      EXPECT_EQ(places(text), places(english(key))) << language << " " << key;
+      EXPECT_EQ(braces(text), braces(english(key))) << language << " " << key;
     }
   }
 }
@@ -58,6 +58,12 @@ TEST(Texts, ATranslationIsAFile) {
   const auto half = Texts::load(path.string());
   ASSERT_FALSE(half);
   EXPECT_THAT(half.error().message(), HasSubstr("no such text"));
+  auto wrong = content;
+  wrong.replace(wrong.find("page {} of {}"), 13, "page {} of {:d");
+  std::ofstream(path) << wrong;
+  const auto places = Texts::load(path.string());
+  ASSERT_FALSE(places);
+  EXPECT_THAT(places.error().message(), HasSubstr("page.number"));
   std::filesystem::remove(path);
   const auto unknown = Texts::load("xx");
   ASSERT_FALSE(unknown);
