@@ -50,7 +50,7 @@ Expected<void> write_georef_csv(const std::filesystem::path& folder, const geore
         for (std::size_t q = 0; q < s.coordinates.path().size(); ++q) {
           const auto t = s.coordinates.path()[q];
           fmt::format_to(to(paths), "{},{},{},{:.6f},{:.3f},{:.3f},{},{},{},{:.3f},{:.3f}\n", r + 1, k + 1, p + 1,
-                         s.probability, s.log_likelihood, s.log_prior, q + 1, map.network.tracks[t.track].id,
+                         s.probability, s.evidence.likelihood(), s.evidence.route, q + 1, map.network.tracks[t.track].id,
                          t.reversed ? 1 : 0, s.coordinates.starts()[q], s.coordinates.starts()[q + 1]);
         }
       }

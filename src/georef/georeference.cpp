@@ -6,19 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "posterior.hpp"
+
 namespace versine::georef {
 
 namespace {
-
-/// Probabilities from log-likelihoods and priors.
-void set_posterior(std::vector<PathSolution>& paths) {
-  double best = -INFINITY, sum = 0.0;
-  for (const auto& p : paths) best = std::max(best, p.log_likelihood + p.log_prior);
-  for (auto& p : paths) sum += p.probability = std::exp(p.log_likelihood + p.log_prior - best);
-  for (auto& p : paths) p.probability /= sum;
-  std::stable_sort(paths.begin(), paths.end(),
-                   [](const auto& a, const auto& b) { return a.probability > b.probability; });
-}
 
 /// Leaves out tracks at both ends that the vehicle never was on.
 void trim(const network::Network& network, PathSolution& p) {
@@ -38,49 +30,6 @@ void trim(const network::Network& network, PathSolution& p) {
   const auto from = whole.begin() + static_cast<std::ptrdiff_t>(first),
              to = whole.begin() + static_cast<std::ptrdiff_t>(last) + 1;
   p.coordinates = network::PathCoordinates(network, network::Path(from, to));
-}
-
-void merge_equal(std::vector<PathSolution>& paths) {
-  for (std::size_t i = 0; i < paths.size(); ++i) {
-    for (std::size_t j = i + 1; j < paths.size();) {
-      if (paths[j].coordinates.path() == paths[i].coordinates.path()) {
-        paths[i].probability += paths[j].probability;
-        paths.erase(paths.begin() + static_cast<std::ptrdiff_t>(j));
-      } else {
-        ++j;
-      }
-    }
-  }
-  std::stable_sort(paths.begin(), paths.end(),
-                   [](const auto& a, const auto& b) { return a.probability > b.probability; });
-}
-
-bool has_step(const network::Path& path, network::OrientedTrack from, const network::OrientedTrack* to) {
-  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-    if (path[i] == from && (to == nullptr || path[i + 1] == *to)) return true;
-  }
-  return false;
-}
-
-Time time_of(const JourneyResult& j, std::size_t step) {
-  return j.start + Duration::from_seconds(j.grid * static_cast<double>(step));
-}
-
-void find_switches(const Map& map, JourneyResult& j) {
-  const auto& best = j.paths.front();
-  const auto& path = best.coordinates.path();
-  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-    if (map.graph.successors(path[i]).size() < 2) continue;
-    double passed = 0.0, same = 0.0;
-    for (const auto& p : j.paths) {
-      if (has_step(p.coordinates.path(), path[i], nullptr)) passed += p.probability;
-      if (has_step(p.coordinates.path(), path[i], &path[i + 1])) same += p.probability;
-    }
-    const auto& d = best.motion.distance;
-    const auto at = std::lower_bound(d.begin(), d.end(), best.coordinates.starts()[i + 1]) - d.begin();
-    j.switches.push_back(
-        {path[i], path[i + 1], same / passed, time_of(j, std::min(static_cast<std::size_t>(at), j.steps - 1))});
-  }
 }
 
 /// Two passes on a path: the second weighs each fix by what the whole journey says of it.
@@ -105,8 +54,8 @@ JourneyResult solve(const Map& map, const Epochs& epochs, const JourneySpan& spa
   for (auto& h : hypotheses) {
     PathSolution p;
     p.coordinates = network::PathCoordinates(map.network, std::move(h.path));
-    p.log_prior = h.prior - h.astray;
-    p.log_likelihood = filter_on_path(p.coordinates, epochs, options).log_likelihood;
+    p.evidence = filter_on_path(p.coordinates, epochs, options).evidence;
+    p.evidence.route = h.prior - h.astray;
     j.paths.push_back(std::move(p));
   }
   set_posterior(j.paths);
@@ -120,10 +69,21 @@ JourneyResult solve(const Map& map, const Epochs& epochs, const JourneySpan& spa
   merge_equal(j.paths);
   for (const auto& p : j.paths) j.entropy -= p.probability > 0.0 ? p.probability * std::log(p.probability) : 0.0;
   find_switches(map, j);
+  find_ambiguous(j);
   return j;
 }
 
-Error outside(const Map& map, const Recording& r) {
+/// Where a journey may have ended: the start of the next.
+std::vector<StartPlace> end_places(const JourneyResult& j) {
+  std::vector<StartPlace> out;
+  for (const auto& p : j.paths) {
+    const auto at = p.coordinates.place(p.motion.distance.back());
+    out.push_back({at.track.track, at.distance, static_cast<double>(p.motion.sigma_distance.back()), p.probability});
+  }
+  return out;
+}
+
+Error outside(const Map& map, const Recording& r, const geodesy::Projection& projection) {
   Error e{.file = r.name,
           .field = "gnss",
           .expected = fmt::format("positions on the map '{}'", map.network.file),
@@ -131,7 +91,8 @@ Error outside(const Map& map, const Recording& r) {
   const auto& f = r.gnss[r.gnss.size() / 2].position;
   e.found = fmt::format("positions around {:.5f}, {:.5f} deg, where the map has no track",
                         f.latitude * 57.29577951308232, f.longitude * 57.29577951308232);
-  const Eigen::Vector2d swapped = map.network.to_map({f.longitude, f.latitude, 0.0});
+  const auto exchanged = projection.forward({f.longitude, f.latitude, 0.0});
+  const Eigen::Vector2d swapped = Eigen::Vector2d(exchanged.easting, exchanged.northing) - map.network.origin;
   if (swapped.allFinite() && !map.index.near(swapped, 500.0).empty()) {
     e.found += "; with latitude and longitude exchanged they lie on it";
     e.advice = "exchange the two columns";
@@ -139,59 +100,127 @@ Error outside(const Map& map, const Recording& r) {
   return e;
 }
 
+/// Journeys of a recording, one span after the other.
+class Solver {
+ public:
+  Solver(const Map& map, Recording& recording, const Options& options, std::vector<Constraint> constraints,
+         RecordingResult& result)
+      : map_(map), r_(recording), options_(options), constraints_(std::move(constraints)), result_(result) {}
+
+  void add(const JourneySpan& span) {
+    const auto knots = make_knots(r_, span, options_);
+    const auto start = span.goes_on ? ended_ : std::vector<StartPlace>{};
+    ended_.clear();
+    const auto stretches = infer_paths(map_, knots, options_.inference, constraints_, start);
+    for (std::size_t s = 0; s < stretches.size(); ++s) {
+      const auto& stretch = stretches[s];
+      const Time from =
+          s == 0 ? std::max(knots[stretch.first].time, r_.gnss[span.first].time) : knots[stretch.first].time;
+      const Time to = knots[stretch.last].time;
+      if (s > 0) note("no way on the map", knots[stretches[s - 1].last].time, from, 1, Finding::Action::split);
+      if ((to - from).seconds() < options_.journeys.shortest) continue;
+      JourneySpan part = span;
+      part.starts_standing = span.starts_standing && s == 0;
+      part.ends_standing = span.ends_standing && s + 1 == stretches.size();
+      solve_part(part, from, to, stretch);
+      if (part.ends_standing) ended_ = end_places(result_.journeys.back());
+    }
+    if (stretches.empty()) {
+      note("off the map", r_.gnss[span.first].time, r_.gnss[span.last].time, span.last - span.first + 1,
+           Finding::Action::removed);
+    }
+  }
+
+ private:
+  void solve_part(const JourneySpan& part, Time from, Time to, const Stretch& stretch) {
+    const auto epochs = make_epochs(r_, part, from, to, options_);
+    auto journey = solve(map_, epochs, part, stretch.hypotheses, options_);
+    for (const auto& f : journey.paths.front().residuals) {
+      if (f.weight > 0.0F) continue;
+      result_.record.rejections.push_back({"gnss", r_.gnss[f.fix].time, "innovation",
+                                           std::sqrt(static_cast<double>(f.nis)), std::sqrt(options_.gnss.gate)});
+    }
+    result_.journeys.push_back(std::move(journey));
+  }
+
+  void note(const char* kind, Time from, Time to, std::size_t count, Finding::Action action) {
+    const bool constrained = std::any_of(constraints_.begin(), constraints_.end(),
+                                         [&](const Constraint& c) { return c.from <= to && from <= c.to; });
+    result_.record.findings.push_back(
+        {"gnss", kind, from, to, count, action,
+         constrained ? "a constraint leaves no way on the map" : "a hole in the map, or fixes far from any track"});
+  }
+
+  const Map& map_;
+  const Recording& r_;
+  const Options& options_;
+  std::vector<Constraint> constraints_;
+  RecordingResult& result_;
+  std::vector<StartPlace> ended_;
+};
+
+std::vector<Constraint> of_recording(std::span<const Constraint> all, const std::string& name) {
+  std::vector<Constraint> out;
+  for (const auto& c : all) {
+    if (c.recording.empty() || c.recording == name || name.ends_with("/" + c.recording)) out.push_back(c);
+  }
+  return out;
+}
+
 }  // namespace
 
 Expected<RecordingResult> georeference(const Map& map, Recording recording, const Options& options,
-                                       std::span<const Constraint> constraints) {
+                                       std::span<const Constraint> constraints, const geodesy::Projection* own) {
+  const geodesy::Projection& projection = own != nullptr ? *own : map.network.projection;
   put_in_order(recording);
   drop_unused_fixes(recording, options.gnss);
-  RecordingResult result{recording.name, recording.gnss.scale, {}, std::move(recording.record)};
+  place_on_map(recording, map.network, projection);
+  RecordingResult result{recording.name, recording.gnss.scale, {}, {}, std::move(recording.record)};
   if (recording.gnss.size() < 3) {
     return fail({.file = recording.name,
                  .field = "gnss",
                  .found = fmt::format("{} usable fixes", recording.gnss.size()),
                  .expected = "a recording with GNSS positions",
-                 .advice = "see the findings for what was removed"});
+                 .advice = result.record.findings.empty()
+                               ? "the file has hardly any"
+                               : fmt::format("{} were removed: {}", result.record.findings.front().count,
+                                             result.record.findings.front().kind)});
   }
   if (const auto n = mark_astray(map, recording, options.inference.radius); n > 0) {
     result.record.findings.push_back({"gnss", "far from any track", recording.gnss.front().time,
                                       recording.gnss.back().time, n, Finding::Action::noted,
                                       "used to find the path only"});
   }
-  const auto spans = find_journeys(recording, map.network, options.journeys, result.record);
-  for (const auto& span : spans) {
-    const auto knots = make_knots(recording, span, map.network, options);
-    const auto stretches = infer_paths(map, knots, options.inference, constraints);
-    for (std::size_t s = 0; s < stretches.size(); ++s) {
-      const auto& stretch = stretches[s];
-      const Time from =
-          s == 0 ? std::max(knots[stretch.first].time, recording.gnss[span.first].time) : knots[stretch.first].time;
-      const Time to = knots[stretch.last].time;
-      if (s > 0) {
-        result.record.findings.push_back({"gnss", "no way on the map", knots[stretches[s - 1].last].time, from, 1,
-                                          Finding::Action::split, "a hole in the map, or fixes far from any track"});
-      }
-      if ((to - from).seconds() < options.journeys.shortest) continue;
-      JourneySpan part = span;
-      part.starts_standing = span.starts_standing && s == 0;
-      part.ends_standing = span.ends_standing && s + 1 == stretches.size();
-      const auto epochs = make_epochs(recording, part, from, to, map.network, options);
-      auto journey = solve(map, epochs, part, stretch.hypotheses, options);
-      for (const auto& f : journey.paths.front().residuals) {
-        if (f.weight > 0.0F) continue;
-        result.record.rejections.push_back({"gnss", recording.gnss[f.fix].time, "innovation",
-                                            std::sqrt(static_cast<double>(f.nis)), std::sqrt(options.gnss.gate)});
-      }
-      result.journeys.push_back(std::move(journey));
+  const auto spans = find_journeys(recording, options.journeys, result.record);
+  Solver solver(map, recording, options, of_recording(constraints, recording.name), result);
+  for (const auto& span : spans) solver.add(span);
+  if (result.journeys.empty() && !spans.empty()) return tl::unexpected(outside(map, recording, projection));
+  result.fixes = std::move(recording.gnss);
+  return result;
+}
+
+Expected<void> check(const Map& map, std::span<const Constraint> constraints) {
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    const auto& c = constraints[i];
+    const std::string field = fmt::format("constraint[{}].", i + 1);
+    if (!(c.from < c.to)) {
+      return fail({.field = field + "to_s",
+                   .found = fmt::format("{} s, not after from_s = {} s", c.to.seconds(), c.from.seconds()),
+                   .expected = "a time span",
+                   .advice = "exchange both, or mend one"});
     }
-    if (stretches.empty()) {
-      result.record.findings.push_back({"gnss", "off the map", recording.gnss[span.first].time,
-                                        recording.gnss[span.last].time, span.last - span.first + 1,
-                                        Finding::Action::removed, "no track near any fix of this journey"});
+    for (const auto& id : c.tracks) {
+      const auto& tracks = map.network.tracks;
+      if (std::any_of(tracks.begin(), tracks.end(), [&](const auto& t) { return t.id == id || t.line_id == id; })) {
+        continue;
+      }
+      return fail({.field = field + "tracks",
+                   .found = fmt::format("'{}', which is not on the map", id),
+                   .expected = "identifiers of tracks or lines of the map",
+                   .advice = "take them from georef.json or network.geojson of the result"});
     }
   }
-  if (result.journeys.empty() && !spans.empty()) return tl::unexpected(outside(map, recording));
-  return result;
+  return {};
 }
 
 Stamp stamp(const RecordingResult& result, Time time) {

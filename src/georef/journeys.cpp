@@ -11,11 +11,8 @@ namespace versine::georef {
 namespace {
 
 /// Speed at each fix, from the receiver or from the displacement over two seconds around it.
-std::vector<double> speeds(const Recording& r, const network::Network& network) {
+std::vector<double> speeds(const Recording& r) {
   const auto& fixes = r.gnss.samples;
-  std::vector<Eigen::Vector2d> points;
-  points.reserve(fixes.size());
-  for (const auto& f : fixes) points.push_back(network.to_map(f.position));
   std::vector<double> out;
   out.reserve(fixes.size());
   std::size_t a = 0, b = 0;
@@ -27,7 +24,7 @@ std::vector<double> speeds(const Recording& r, const network::Network& network) 
     if (fixes[i].speed) {
       out.push_back(*fixes[i].speed);
     } else {
-      out.push_back(dt > 0.5 ? (points[b] - points[a]).norm() / dt : (out.empty() ? 99.0 : out.back()));
+      out.push_back(dt > 0.5 ? (fixes[b].place - fixes[a].place).norm() / dt : (out.empty() ? 99.0 : out.back()));
     }
   }
   return out;
@@ -35,8 +32,7 @@ std::vector<double> speeds(const Recording& r, const network::Network& network) 
 
 /// Whether a movement continues the journey before it: its first 40 m do not lead back along the other's last
 /// 40 m (a reversal turns by nearly 180 degrees, a receiver astray in a tunnel by anything).
-bool goes_on(const Recording& r, const network::Network& network, const JourneySpan& before, std::size_t begin,
-             std::size_t end) {
+bool goes_on(const Recording& r, const JourneySpan& before, std::size_t begin, std::size_t end) {
   if (!before.ends_standing) return false;
   constexpr double far = 40.0;
   // Steps of a second or two only: over a longer gap the position may have jumped.
@@ -45,7 +41,7 @@ bool goes_on(const Recording& r, const network::Network& network, const JourneyS
     for (std::size_t i = from; i != limit && sum.norm() < far; i += static_cast<std::size_t>(by)) {
       const std::size_t next = i + static_cast<std::size_t>(by), a = std::min(i, next), b = std::max(i, next);
       const double dt = (r.gnss[b].time - r.gnss[a].time).seconds();
-      const Eigen::Vector2d step = network.to_map(r.gnss[b].position) - network.to_map(r.gnss[a].position);
+      const Eigen::Vector2d step = r.gnss[b].place - r.gnss[a].place;
       if (dt < 2.0 && step.norm() < 60.0 * dt) sum += step;
     }
     return sum;
@@ -59,8 +55,7 @@ bool goes_on(const Recording& r, const network::Network& network, const JourneyS
 std::size_t mark_astray(const Map& map, Recording& r, double radius) {
   std::size_t count = 0;
   for (auto& f : r.gnss.samples) {
-    const Eigen::Vector2d p = map.network.to_map(f.position);
-    if (f.sigma > radius || !map.index.near(p, radius).empty()) continue;
+    if (f.sigma > radius || !map.index.near(f.place, radius).empty()) continue;
     f.sigma = 2.0 * radius;
     ++count;
   }
@@ -72,14 +67,14 @@ double fix_sigma(const Fix& fix, const GnssModel& model) {
   return std::max(model.scale * told, model.floor);
 }
 
-std::vector<JourneySpan> find_journeys(const Recording& r, const network::Network& network,
-                                       const JourneyOptions& options, RunRecord& record) {
+std::vector<JourneySpan> find_journeys(const Recording& r, const JourneyOptions& options, RunRecord& record) {
   const auto& fixes = r.gnss.samples;
-  const auto speed = speeds(r, network);
+  const auto speed = speeds(r);
   std::vector<JourneySpan> out;
   const auto at = [&](std::size_t i) { return fixes[i].time; };
   constexpr double stop = 3.0, lead = 20.0;  // s: shortest standstill, and how much of it is kept
   std::size_t i = 0, previous_end = 0;
+  bool moved = false;  // since the last journey
   while (i < fixes.size()) {
     while (i < fixes.size() && speed[i] < options.standing) ++i;
     if (i == fixes.size()) break;
@@ -114,23 +109,24 @@ std::vector<JourneySpan> find_journeys(const Recording& r, const network::Networ
     if (span.ends_standing) span.stops.push_back({stands_from, at(span.last) + Duration::from_seconds(5.0)});
     previous_end = span.last;
     if (!((at(end) - at(begin)).seconds() > options.shortest && fastest > options.slowest)) {
-      // too short for a journey of its own
-    } else if (!options.every_stop && !out.empty() && goes_on(r, network, out.back(), begin, end)) {
+      moved = true;  // too short for a journey of its own
+    } else if (!options.every_stop && !out.empty() && goes_on(r, out.back(), begin, end)) {
       JourneySpan& before = out.back();
       if (!before.stops.empty() && span.starts_standing) before.stops.back().until = stands_until;
       if (span.ends_standing) before.stops.push_back(span.stops.back());
       before.last = span.last;
       before.ends_standing = span.ends_standing;
     } else {
+      span.goes_on = !out.empty() && out.back().ends_standing && span.starts_standing && !moved;
       out.push_back(span);
+      moved = false;
     }
     i = std::max(i, end + 1);
   }
   return out;
 }
 
-std::vector<Knot> make_knots(const Recording& r, const JourneySpan& span, const network::Network& network,
-                             const Options& options) {
+std::vector<Knot> make_knots(const Recording& r, const JourneySpan& span, const Options& options) {
   std::vector<Knot> out;
   double travelled = 0.0;
   bool known = false;
@@ -139,11 +135,10 @@ std::vector<Knot> make_knots(const Recording& r, const JourneySpan& span, const 
     const double dt = i == span.first ? 0.0 : (f.time - r.gnss[i - 1].time).seconds();
     if (f.speed && i > span.first && r.gnss[i - 1].speed) {
       travelled += 0.5 * (*f.speed + *r.gnss[i - 1].speed) * dt;
-      known = known || true;
+      known = true;
       if (dt > 5.0) known = false, travelled = -1e9;
     }
-    const Eigen::Vector2d p = network.to_map(f.position);
-    if (!p.allFinite()) continue;
+    const Eigen::Vector2d& p = f.place;
     const double sigma = fix_sigma(f, options.gnss);
     const bool first = out.empty(), last = i == span.last;
     const double since = first ? 0.0 : (f.time - out.back().time).seconds();

@@ -30,9 +30,7 @@ struct Sums {
 /// Which way is forward in the sensor's axes: the direction whose acceleration explains the changes of GNSS speed.
 /// Its sign is that of the journey, so that a vehicle running backwards accelerates positively too.
 Eigen::Vector3d forward_axis(std::span<const InertialSample> imu, std::span<const Fix> fixes,
-                             const Eigen::Vector3d& mean, const network::Network& network,
-                             const std::optional<Eigen::Vector3d>& given) {
-  Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+                             const Eigen::Vector3d& mean, const std::optional<Eigen::Vector3d>& given) {
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   std::size_t k = 0;
   const auto speed = [&](std::size_t i, std::size_t j) {
@@ -40,7 +38,7 @@ Eigen::Vector3d forward_axis(std::span<const InertialSample> imu, std::span<cons
     if (i == 0 || j + 1 >= fixes.size()) return 0.0;
     const auto v = [&](std::size_t m) {
       const double dt = (fixes[m + 1].time - fixes[m - 1].time).seconds();
-      return (network.to_map(fixes[m + 1].position) - network.to_map(fixes[m - 1].position)).norm() / dt;
+      return (fixes[m + 1].place - fixes[m - 1].place).norm() / dt;
     };
     return v(j) - v(i);
   };
@@ -54,7 +52,6 @@ Eigen::Vector3d forward_axis(std::span<const InertialSample> imu, std::span<cons
     while (k < imu.size() && imu[k].time < fixes[i].time) ++k;
     for (; k < imu.size() && imu[k].time < fixes[j].time; ++k) s.add(imu[k].acceleration - mean);
     if (s.n < 5) continue;
-    A += s.mean * s.mean.transpose();
     b += s.mean * (speed(i, j) / dt);
   }
   if (given) return (given->normalized()) * (b.dot(*given) < 0.0 ? -1.0 : 1.0);
@@ -65,7 +62,7 @@ Eigen::Vector3d forward_axis(std::span<const InertialSample> imu, std::span<cons
 }
 
 Inertial on_grid(const Recording& r, const JourneySpan& span, Time from, double grid, std::size_t steps,
-                 const network::Network& network, const Options& options) {
+                 const Options& options) {
   Inertial out;
   out.forward.assign(steps, 0.0F);
   const Time to = from + Duration::from_seconds(grid * static_cast<double>(steps));
@@ -78,7 +75,7 @@ Inertial on_grid(const Recording& r, const JourneySpan& span, Time from, double 
     if (stands) standing.add(s.acceleration), standing_turn.add(s.turn_rate);
   }
   const auto fixes = r.gnss.between(from, to);
-  const Eigen::Vector3d axis = forward_axis(imu, fixes, all.mean, network, options.forward_axis);
+  const Eigen::Vector3d axis = forward_axis(imu, fixes, all.mean, options.forward_axis);
   // Bias and gravity's share from standstill; without one the filter's own state takes it up.
   const double bias = axis.dot(standing.n > 50 ? standing.mean : all.mean);
   const Eigen::Vector3d down = -all.mean.normalized();
@@ -102,8 +99,7 @@ Inertial on_grid(const Recording& r, const JourneySpan& span, Time from, double 
 
 }  // namespace
 
-Epochs make_epochs(const Recording& r, const JourneySpan& span, Time from, Time to, const network::Network& network,
-                   const Options& options) {
+Epochs make_epochs(const Recording& r, const JourneySpan& span, Time from, Time to, const Options& options) {
   const bool inertial = !r.imu.between(from, to).empty();
   Epochs out;
   out.start = from;
@@ -111,13 +107,13 @@ Epochs make_epochs(const Recording& r, const JourneySpan& span, Time from, Time 
   out.motion = inertial ? options.with_imu : options.without_imu;
   out.correlation_time = options.gnss.correlation_time;
   if (const auto first = r.gnss.lower_bound(from); first < r.gnss.size()) {
-    out.start_point = network.to_map(r.gnss[first].position);
+    out.start_point = r.gnss[first].place;
     out.start_sigma = fix_sigma(r.gnss[first], options.gnss);
   }
   const auto last = static_cast<std::int64_t>(std::floor((to - from).seconds() / out.grid + 0.5));
   const auto steps = static_cast<std::size_t>(last) + 1;
   Inertial imu;
-  if (inertial) imu = on_grid(r, span, from, out.grid, steps, network, options);
+  if (inertial) imu = on_grid(r, span, from, out.grid, steps, options);
 
   // Measurements at their grid steps, and a step a second where there are none.
   const auto second = std::max<std::int64_t>(1, std::llround(1.0 / out.grid));
@@ -137,12 +133,10 @@ Epochs make_epochs(const Recording& r, const JourneySpan& span, Time from, Time 
       e.speed = std::abs(r.speed[o].speed);
       e.sigma_speed = options.gnss.speed_floor;
     }
-    const Eigen::Vector2d p = network.to_map(f.position);
     const double sigma = fix_sigma(f, options.gnss);
-    if (!p.allFinite()) continue;
     Epoch& e = epoch_at(std::min<std::int64_t>(last, std::llround((f.time - from).seconds() / out.grid)));
     if (sigma <= options.inference.largest_sigma) {
-      e.position = p;
+      e.position = f.place;
       e.sigma = sigma;
       e.fix = i;
     }

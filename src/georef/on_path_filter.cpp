@@ -156,7 +156,7 @@ class PathFilter {
     last_sigma_ = e.sigma;
     const Innovation i = innovation(e);
     if (!(i.ra * i.ra / i.Sa + i.rc * i.rc / i.Sc > options_.gnss.jump) || gross(i, e)) return;
-    out_.log_likelihood -= 4.6;  // one fix in a hundred
+    out_.evidence.position -= 4.6;  // one fix in a hundred
     keep_colour(0.0, std::max(1.0, i.along * i.along / (i.coloured * i.coloured)));
     across_ = 0.0;
     across_variance_ = std::max(1.0, i.across * i.across / (i.across_sigma * i.across_sigma));
@@ -181,11 +181,11 @@ class PathFilter {
     const double r = z - H.dot(x_.transpose()), S = (H * P_ * H.transpose())(0) + R, nu = options_.gnss.nu;
     const double nis = r * r / S;
     if (sure) {
-      out_.log_likelihood += log_gauss(r, S);
+      out_.evidence.speed += log_gauss(r, S);
       correct(H, r, R);
       return;
     }
-    out_.log_likelihood += log_student(r, S, nu);
+    out_.evidence.speed += log_student(r, S, nu);
     if (nis > options_.gnss.gate) return;
     const double w = std::min(1.0, (nu + 1.0) / (nu + nis));
     correct(H, r, R + S * (1.0 / w - 1.0));
@@ -237,9 +237,9 @@ class PathFilter {
     double w = std::min(1.0, (g.nu + 2.0) / (g.nu + nis));
     bool gated = gross(i, e);
     if (!weights_.empty()) w = weights_[index], gated = !(w > 0.02);
-    out_.log_likelihood += std::lgamma(0.5 * (g.nu + 2.0)) - std::lgamma(0.5 * g.nu) -
-                           std::log(g.nu * std::numbers::pi) - 0.5 * std::log(Sa * Sc) -
-                           0.5 * (g.nu + 2.0) * std::log1p(nis / g.nu);
+    out_.evidence.position += std::lgamma(0.5 * (g.nu + 2.0)) - std::lgamma(0.5 * g.nu) -
+                              std::log(g.nu * std::numbers::pi) - 0.5 * std::log(Sa * Sc) -
+                              0.5 * (g.nu + 2.0) * std::log1p(nis / g.nu);
     if (gated && weights_.empty() && rc * rc < 16.0 * Sc) {
       // Fixes that agree with the track but not with the distance, many in a row: it is the distance that is wrong.
       if (++astray_ >= 10) P_(0, 0) += ra * ra, astray_ = 0;
@@ -265,7 +265,7 @@ class PathFilter {
     const Eigen::RowVector4d H(k1 - k0, k0 * dt, 0, 0);
     const double R = options_.turn_rate_sigma * options_.turn_rate_sigma;
     const double S = (H * P_ * H.transpose())(0) + R, nu = options_.gnss.nu;
-    out_.log_likelihood += log_student(r, S, nu);
+    out_.evidence.turn_rate += log_student(r, S, nu);
     const double w = std::min(1.0, (nu + 1.0) / (nu + r * r / S));
     if (r * r < options_.gnss.gate * S) correct(H, r, R + S * (1.0 / w - 1.0));
   }

@@ -55,8 +55,9 @@ struct Pending {
 class Search {
  public:
   Search(const Map& map, std::span<const Knot> knots, const InferenceOptions& options,
-         std::span<const Constraint> constraints)
-      : map_(map), knots_(knots.begin(), knots.end()), options_(options), constraints_(constraints) {
+         std::span<const Constraint> constraints, std::span<const StartPlace> start)
+      : map_(map), knots_(knots.begin(), knots.end()), options_(options), start_(start) {
+    for (const auto& c : constraints) rules_.push_back(rule_of(c));
     log_straight_ = std::log1p(-options.diverging);
     log_diverging_ = std::log(options.diverging);
   }
@@ -73,8 +74,9 @@ class Search {
       nodes_.clear();
       for (auto& c : alive) {
         nodes_.push_back({c.track, none});
-        c.entries.push_back(
-            {c.emission, 0.0, c.astray, mix(0, c.track.state()), static_cast<std::uint32_t>(nodes_.size() - 1)});
+        const double prior = k == 0 ? start_prior(c) : 0.0;
+        c.entries.push_back({c.emission - prior, prior, c.astray, mix(0, c.track.state()),
+                             static_cast<std::uint32_t>(nodes_.size() - 1)});
       }
       Stretch stretch{k, k, {}};
       std::size_t last = k, next = k + 1, misses = 0;
@@ -100,15 +102,38 @@ class Search {
   }
 
  private:
-  [[nodiscard]] bool allowed(network::TrackIndex track, Time time) const {
-    for (const auto& c : constraints_) {
-      if (time < c.from || c.to < time) continue;
-      const auto& t = map_.network.tracks[track];
+  /// A constraint on the map's tracks.
+  struct Rule {
+    Time from, to;
+    std::vector<char> allows;  // of each track
+  };
+  [[nodiscard]] Rule rule_of(const Constraint& c) const {
+    Rule r{c.from, c.to, {}};
+    r.allows.reserve(map_.network.tracks.size());
+    for (const auto& t : map_.network.tracks) {
       const bool named =
           std::any_of(c.tracks.begin(), c.tracks.end(), [&](const auto& id) { return id == t.line_id || id == t.id; });
-      if (named == c.excluded) return false;
+      r.allows.push_back(named != c.excluded);
     }
-    return true;
+    return r;
+  }
+  /// Whether the vehicle may have been on the track between two times: a rule counts that holds all of it.
+  [[nodiscard]] bool allowed(network::TrackIndex track, Time from, Time to) const {
+    return std::all_of(rules_.begin(), rules_.end(),
+                       [&](const Rule& r) { return from < r.from || r.to < to || r.allows[track] != 0; });
+  }
+
+  /// The vehicle stands where the journey before left it; a movement that nobody noticed has one chance in a thousand.
+  [[nodiscard]] double start_prior(const Candidate& c) const {
+    if (start_.empty()) return 0.0;
+    double p = 1e-3;
+    const double length = map_.graph.length(c.track), at = c.track.reversed ? length - c.distance : c.distance;
+    for (const auto& s : start_) {
+      if (s.track != c.track.track) continue;
+      const double x = (at - s.distance) / std::hypot(s.sigma, knots_.front().sigma, 5.0);
+      p += s.probability * std::exp(-0.5 * x * x);
+    }
+    return std::log(std::min(p, 1.0));
   }
 
   std::vector<Candidate> candidates(std::size_t k) {
@@ -128,7 +153,7 @@ class Search {
     }
     if (hits.size() > 40) hits.resize(40);
     for (const auto& h : hits) {
-      if (!allowed(h.track, knot.time)) continue;
+      if (!allowed(h.track, knot.time, knot.time)) continue;
       const double length = map_.network.tracks[h.track].line.length(), x = h.offset / knot.sigma;
       const double emission = knot.weight * 2.5 * std::log1p(x * x / 4.0);  // Student's t, 4 degrees of freedom
       const double astray = knot.sigma > options_.largest_sigma ? emission : 0.0;
@@ -140,6 +165,7 @@ class Search {
 
   struct Bounds {
     double expected, spread, longest, backward;
+    Time from, to;
   };
   [[nodiscard]] Bounds bounds(std::size_t from, std::size_t to) const {
     const double chord = (knots_[to].point - knots_[from].point).norm();
@@ -155,7 +181,7 @@ class Search {
     const double spread = std::max(3.0, sigma) + (gap ? 0.3 : 0.05) * expected;
     const double longest = std::min((gap ? 2.5 * expected + 500.0 : 1.3 * expected + 60.0) + 4.0 * sigma,
                                     options_.top_speed * dt + 60.0 + 4.0 * sigma);
-    return {expected, spread, std::max(longest, 10.0), 10.0 + 4.0 * sigma};
+    return {expected, spread, std::max(longest, 10.0), 10.0 + 4.0 * sigma, knots_[from].time, knots_[to].time};
   }
 
   void extend(const std::vector<Candidate>& alive, std::size_t from, std::vector<Candidate>& found, std::size_t to) {
@@ -203,6 +229,7 @@ class Search {
       if (length > b.longest) return;
       const auto out = map_.graph.successors(track);
       for (const auto& arc : out) {
+        if (!allowed(arc.to.track, b.from, b.to)) continue;
         double p = prior;
         if (out.size() > 1) {
           p += arc.diverging ? log_diverging_ - std::log(static_cast<double>(out.size() - 1)) : log_straight_;
@@ -266,7 +293,8 @@ class Search {
   const Map& map_;
   std::vector<Knot> knots_;  // with the sigmas that the map shows to be needed
   const InferenceOptions& options_;
-  std::span<const Constraint> constraints_;
+  std::span<const StartPlace> start_;
+  std::vector<Rule> rules_;
   double log_straight_ = 0.0, log_diverging_ = 0.0;
   std::vector<Node> nodes_;
   std::vector<Label> labels_;
@@ -276,8 +304,8 @@ class Search {
 }  // namespace
 
 std::vector<Stretch> infer_paths(const Map& map, std::span<const Knot> knots, const InferenceOptions& options,
-                                 std::span<const Constraint> constraints) {
-  return Search(map, knots, options, constraints).run();
+                                 std::span<const Constraint> constraints, std::span<const StartPlace> start) {
+  return Search(map, knots, options, constraints, start).run();
 }
 
 }  // namespace versine::georef

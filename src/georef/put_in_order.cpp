@@ -92,6 +92,24 @@ void put_in_order(Recording& r) {
   spread_batches(r.imu, r.record);
 }
 
+void place_on_map(Recording& r, const network::Network& network, const geodesy::Projection& projection) {
+  Removed outside{"outside the map's projection"};
+  std::vector<Fix> kept;
+  kept.reserve(r.gnss.size());
+  for (std::size_t i = 0; i < r.gnss.size(); ++i) {
+    Fix f = r.gnss[i];
+    const auto p = projection.forward(f.position);
+    f.place = Eigen::Vector2d(p.easting, p.northing) - network.origin;
+    if (f.place.allFinite()) {
+      kept.push_back(f);
+    } else {
+      outside.add(i, f.time);
+    }
+  }
+  outside.report("gnss", r.record);
+  r.gnss.samples = std::move(kept);
+}
+
 void drop_unused_fixes(Recording& r, const GnssModel& model) {
   Removed unused{"type not used"};
   std::vector<Fix> kept;

@@ -56,8 +56,8 @@ void attribute(hid_t at, const char* name, const std::string& text) {
 
 void write_path(hid_t at, const georef::Map& map, const georef::PathSolution& p) {
   attribute(at, "probability", p.probability);
-  attribute(at, "log_likelihood", p.log_likelihood);
-  attribute(at, "log_prior", p.log_prior);
+  attribute(at, "log_likelihood", p.evidence.likelihood());
+  attribute(at, "log_prior", p.evidence.route);
   std::string tracks;
   for (const auto& t : p.coordinates.path()) {
     tracks += fmt::format("{}{}{}", tracks.empty() ? "" : ";", t.reversed ? "-" : "+", map.network.tracks[t.track].id);

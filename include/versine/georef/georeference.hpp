@@ -14,8 +14,7 @@ namespace versine::georef {
 struct PathSolution {
   network::PathCoordinates coordinates;
   double probability = 0.0;            ///< posterior, among the hypotheses of the journey
-  double log_likelihood = 0.0;         ///< of the measurements given the path
-  double log_prior = 0.0;              ///< of the legs taken, and of fixes that serve to find the path only
+  Evidence evidence;                   ///< what the probability is made of
   OnPath motion;                       ///< smoothed, on the journey's grid
   std::vector<FixResidual> residuals;  ///< innovations of the filter; weight 0: rejected
 };
@@ -27,13 +26,24 @@ struct SwitchDecision {
   Time time;                 ///< of passing it
 };
 
+/// Where another path leaves the most probable one, and comes back (or does not, at the journey's ends).
+struct AmbiguousStretch {
+  Time from, to;
+  double begin = 0.0, end = 0.0;     ///< on the most probable path, m
+  network::Path taken, alternative;  ///< tracks that only one of both has
+  std::vector<std::size_t> paths;    ///< indices of those that take the alternative
+  double probability = 0.0;          ///< of the alternative
+  Evidence evidence;                 ///< most probable path minus the best of `paths`: what decided
+};
+
 struct JourneyResult {
   Time start;
   double grid = 0.0;  ///< s between the steps of OnPath
   std::size_t steps = 0;
   std::vector<PathSolution> paths;  ///< most probable first; probabilities sum to 1
   std::vector<SwitchDecision> switches;
-  double entropy = 0.0;  ///< of the paths' probabilities, nat
+  std::vector<AmbiguousStretch> ambiguous;  ///< in order of time
+  double entropy = 0.0;                     ///< of the paths' probabilities, nat
   bool starts_standing = false, ends_standing = false;
 
   [[nodiscard]] Time end() const {
@@ -45,14 +55,19 @@ struct RecordingResult {
   std::string name;
   TimeScale scale = TimeScale::recorder;
   std::vector<JourneyResult> journeys;
+  Series<Fix> fixes;  ///< as used: in order, without what was removed; FixResidual::fix counts them
   RunRecord record;
 };
 
 /// The whole of Roth 2018: journeys, path hypotheses, filter and smoother on each, posterior. Fails when nothing of
-/// the recording lies on the map (and says whether swapped coordinates would). Pure: may run on many threads with one
-/// map, apart from its projection: each thread passes a projection of its own network copy.
+/// the recording lies on the map (and says whether swapped coordinates would). Pure. Many threads may share a map when
+/// each passes a projection of its own, a copy of the map's.
 [[nodiscard]] Expected<RecordingResult> georeference(const Map& map, Recording recording, const Options& options,
-                                                     std::span<const Constraint> constraints = {});
+                                                     std::span<const Constraint> constraints = {},
+                                                     const geodesy::Projection* projection = nullptr);
+
+/// Whether every track that a constraint names is on the map, and its time span has a length.
+[[nodiscard]] Expected<void> check(const Map& map, std::span<const Constraint> constraints);
 
 /// Where the vehicle was at a time.
 struct Stamp {

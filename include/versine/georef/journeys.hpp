@@ -15,6 +15,10 @@ void put_in_order(Recording& recording);
 /// Removes fixes of a type that is not used (dead-reckoned ones drift by hundreds of metres in a tunnel).
 void drop_unused_fixes(Recording& recording, const GnssModel& model);
 
+/// Sets Fix::place, map m relative to Network::origin; the one use of a projection. Fixes outside the projection's area
+/// are removed and counted.
+void place_on_map(Recording& recording, const network::Network& network, const geodesy::Projection& projection);
+
 /// The vehicle stood, as the fixes say.
 struct Standstill {
   Time from, until;
@@ -24,12 +28,14 @@ struct Standstill {
 struct JourneySpan {
   std::size_t first = 0, last = 0;
   bool starts_standing = false, ends_standing = false;
+  bool goes_on = false;           ///< begins where the journey before it ended: nothing moved in between
   std::vector<Standstill> stops;  ///< at both ends and in between, in order of time
 };
 /// Splits by speed, and joins again where the vehicle went on in the same direction (unless every_stop). Standstill of
-/// up to 20 s is kept at both ends, for the known zero speed and the end positions. REQUIRES put_in_order.
-[[nodiscard]] std::vector<JourneySpan> find_journeys(const Recording& recording, const network::Network& network,
-                                                     const JourneyOptions& options, RunRecord& record);
+/// up to 20 s is kept at both ends, for the known zero speed and the end positions. REQUIRES put_in_order and
+/// place_on_map, as all below.
+[[nodiscard]] std::vector<JourneySpan> find_journeys(const Recording& recording, const JourneyOptions& options,
+                                                     RunRecord& record);
 
 /// Fixes farther than `radius` from any track cannot be right by less: they are given that large a sigma, so that they
 /// serve to find the path only. Returns how many.
@@ -39,11 +45,10 @@ std::size_t mark_astray(const Map& map, Recording& recording, double radius);
 [[nodiscard]] double fix_sigma(const Fix& fix, const GnssModel& model);
 
 /// Fixes of a journey for the coarse search.
-[[nodiscard]] std::vector<Knot> make_knots(const Recording& recording, const JourneySpan& span,
-                                           const network::Network& network, const Options& options);
+[[nodiscard]] std::vector<Knot> make_knots(const Recording& recording, const JourneySpan& span, const Options& options);
 
 /// Measurements of [from, to] on the time grid.
 [[nodiscard]] Epochs make_epochs(const Recording& recording, const JourneySpan& span, Time from, Time to,
-                                 const network::Network& network, const Options& options);
+                                 const Options& options);
 
 }  // namespace versine::georef

@@ -57,12 +57,25 @@ struct FixResidual {
 using State4 = Eigen::Vector4d;
 using Covariance4 = Eigen::Matrix4d;
 
+/// Logarithms of what each kind of measurement makes of a path.
+struct Evidence {
+  double position = 0.0;   ///< fixes, along and across the track
+  double speed = 0.0;      ///< GNSS, odometer, standstill
+  double turn_rate = 0.0;  ///< gyro against the map's curvature
+  double route = 0.0;      ///< prior: legs of switches, the journey before, fixes too poor for the filter
+  [[nodiscard]] double likelihood() const { return position + speed + turn_rate; }
+  [[nodiscard]] double total() const { return likelihood() + route; }
+  friend Evidence operator-(const Evidence& a, const Evidence& b) {
+    return {a.position - b.position, a.speed - b.speed, a.turn_rate - b.turn_rate, a.route - b.route};
+  }
+};
+
 struct Filtered {
   std::vector<State4> predicted, updated;
   std::vector<Covariance4> predicted_covariance, updated_covariance;
   std::vector<double> colour_kept;  ///< share of the correlated GNSS error that went on from the epoch before
   std::vector<FixResidual> residuals;
-  double log_likelihood = 0.0;
+  Evidence evidence;  ///< without route
 };
 
 /// What the filter carries from one epoch to the next, for those who feed it an epoch at a time (online.hpp).

@@ -43,12 +43,22 @@ struct Stretch {
   std::vector<Hypothesis> hypotheses;  ///< best first, distinct
 };
 
+/// Where a journey may begin, as the one before it ended.
+struct StartPlace {
+  network::TrackIndex track = 0;
+  double distance = 0.0;  ///< from the track's beginning, m
+  double sigma = 1.0;     ///< m
+  double probability = 0.0;
+};
+
 /// The k best paths through the oriented graph (list Viterbi over candidate tracks of each knot, routes between knots
 /// by Dijkstra with a bounded number of labels a state): cost grows linearly with the knots and does not depend on
 /// the number of paths that exist. Knots that no candidate explains are passed over; where the map offers no way on,
-/// a new stretch begins. No stretch: nothing of the map is near.
+/// a new stretch begins. No stretch: nothing of the map is near, or constraints leave nothing. `start`: prior of the
+/// first knot's track; empty: none.
 [[nodiscard]] std::vector<Stretch> infer_paths(const Map& map, std::span<const Knot> knots,
                                                const InferenceOptions& options,
-                                               std::span<const Constraint> constraints = {});
+                                               std::span<const Constraint> constraints = {},
+                                               std::span<const StartPlace> start = {});
 
 }  // namespace versine::georef

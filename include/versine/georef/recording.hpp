@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -20,6 +21,7 @@ struct Fix {
   double sigma_speed = 0.0;     ///< m/s, with speed; 0: not told
   sensors::FixType type = sensors::FixType::single;
   int satellites = 0;
+  Eigen::Vector2d place = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());  ///< place_on_map()
 };
 
 /// Rates of the vehicle's IMU at an instant, in its own axes; the mounting turns them forward-right-down.
