@@ -25,6 +25,7 @@ Expected<GeorefConfig> read_job(const std::string& text, const fs::path& path) {
   const auto read = parse_config(
       text, path, [&](ConfigVisitor& v) { describe(v, config); }, no_recordings);
   if (!read) return tl::unexpected(read.error());
+  if (auto more = load_constraints(config); !more) return tl::unexpected(more.error());
   return config;
 }
 

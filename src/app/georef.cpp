@@ -3,185 +3,297 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <atomic>
 #include <chrono>
-#include <fstream>
+#include <mutex>
 #include <nlohmann/json.hpp>
+#include <thread>
 
+#include "versine/app/version.hpp"
+#include "versine/core/calendar.hpp"
 #include "versine/io/georef_result.hpp"
-#include "versine/io/journey_brussels.hpp"
-#include "versine/io/journey_onboard.hpp"
-#include "versine/io/read_recording.hpp"
+#include "versine/io/result_folder.hpp"
+#include "versine/io/run_json.hpp"
 
 namespace versine::app {
 
 namespace {
 
+namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-double since(Clock::time_point t) {
-  return std::chrono::duration<double>(Clock::now() - t).count();
+
+Expected<GeorefConfig> read_job(const fs::path& job, std::span<const std::string> overrides) {
+  GeorefConfig config;
+  if (auto read = read_config(
+          job, [&](ConfigVisitor& v) { describe(v, config); }, overrides);
+      !read) {
+    return tl::unexpected(read.error());
+  }
+  const auto wrong = [&](const char* field, std::string found, const char* expected, const char* advice) {
+    return fail(
+        {.file = job.string(), .field = field, .found = std::move(found), .expected = expected, .advice = advice});
+  };
+  if (config.job != "georef") return wrong("job", "'" + config.job + "'", "\"georef\"", "run the command of that name");
+  if (config.recordings.empty() && config.tables.empty()) {
+    return wrong("recordings", "nothing", "recordings to be georeferenced",
+                 "name files in 'recordings', or add [[recording]] tables");
+  }
+  if (auto read = load_constraints(config); !read) return tl::unexpected(read.error());
+  return config;
 }
 
-bool begins_with(const std::filesystem::path& path, std::string_view bytes) {
-  std::ifstream stream(path, std::ios::binary);
-  std::string head(bytes.size(), '\0');
-  return stream.read(head.data(), static_cast<std::streamsize>(head.size())) && head == bytes;
-}
+/// What one entry of the job came to: a file may hold many recordings.
+struct Entry {
+  std::vector<GeorefOutcome> outcomes;
+  std::vector<georef::Recording> again;  ///< for the online replay, one an outcome
+  std::vector<Error> faults;
+};
 
-bool is_brussels(const std::filesystem::path& path) {
-  std::ifstream stream(path);
-  std::string header;
-  std::getline(stream, header);
-  return header.find("position_type") != std::string::npos && header.find("timestamp") != std::string::npos;
-}
+class Solver {
+ public:
+  Solver(const GeorefConfig& config, const georef::Map& map)
+      : config_(config), map_(map), entries_(config.recordings.size() + config.tables.size()) {}
 
-nlohmann::json summary_json(const GeorefSummary& s, const georef::Map& map) {
-  nlohmann::json out;
-  out["network"] = {
-      {"file", map.network.file}, {"tracks", map.network.tracks.size()}, {"warnings", map.network.record.warnings}};
-  out["timings_s"] = {{"map", s.seconds_map}, {"solve", s.seconds_solve}, {"write", s.seconds_write}};
-  out["faults"] = nlohmann::json::array();
-  for (const auto& f : s.faults) out["faults"].push_back(f.message());
-  for (const auto& o : s.outcomes) {
-    nlohmann::json r{{"name", o.name}};
-    if (!o.result) {
-      r["error"] = o.result.error().message();
-      out["recordings"].push_back(r);
-      continue;
+  /// Entries on many threads, each with a projection of its own; the order of results is that of the job.
+  [[nodiscard]] std::vector<Entry> run(int threads, Progress& progress) {
+    const auto cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const auto count = std::min<std::size_t>(entries_.size(), static_cast<std::size_t>(threads > 0 ? threads : cores));
+    std::atomic<std::size_t> next{0};
+    std::mutex mutex;
+    std::size_t done = 0;
+    const std::vector<geodesy::Projection> projections(std::max<std::size_t>(1, count), map_.network.projection);
+    const auto work = [&](const geodesy::Projection& projection) {
+      for (std::size_t i = next++; i < entries_.size(); i = next++) {
+        if (progress.cancelled()) return;
+        entries_[i] = solve(i, projection);
+        const std::scoped_lock lock(mutex);
+        progress.report("journeys", static_cast<double>(++done) / static_cast<double>(entries_.size()));
+      }
+    };
+    std::vector<std::thread> pool;
+    for (std::size_t t = 1; t < count; ++t) pool.emplace_back(work, std::cref(projections[t]));
+    work(projections[0]);
+    for (auto& t : pool) t.join();
+    return std::move(entries_);
+  }
+
+ private:
+  [[nodiscard]] Entry solve(std::size_t i, const geodesy::Projection& projection) const {
+    Entry entry;
+    const auto add = [&](georef::Recording&& r) {
+      std::string name = r.name;
+      if (config_.run_online) entry.again.push_back(r);
+      entry.outcomes.push_back({std::move(name), georef::georeference(map_, std::move(r), config_.options,
+                                                                      config_.constraints, &projection)});
+    };
+    if (i >= config_.recordings.size()) {
+      const auto& c = config_.tables[i - config_.recordings.size()];
+      auto r = load_recording(c);
+      if (r) {
+        add(std::move(*r));
+      } else {
+        entry.outcomes.push_back({c.name.empty() ? c.gnss.file.written : c.name, tl::unexpected(r.error())});
+      }
+      return entry;
     }
-    for (const auto& f : o.result->record.findings) {
-      r["findings"].push_back({{"sensor", f.sensor},
-                               {"kind", f.kind},
-                               {"from_s", f.from.seconds()},
-                               {"to_s", f.to.seconds()},
-                               {"count", f.count},
-                               {"action", to_string(f.action)},
-                               {"detail", f.detail}});
+    const InputPath& file = config_.recordings[i];
+    auto recordings = load_recordings(file.path, entry.faults);
+    if (!recordings) {
+      entry.outcomes.push_back({file.written, tl::unexpected(recordings.error())});
+      return entry;
     }
-    r["rejected_fixes"] = o.result->record.rejections.size();
-    for (const auto& j : o.result->journeys) {
-      nlohmann::json tracks = nlohmann::json::array();
-      for (const auto& t : j.paths.front().coordinates.path()) tracks.push_back(map.network.tracks[t.track].id);
-      r["journeys"].push_back(
-          {{"from_s", j.start.seconds()},
-           {"to_s", j.end().seconds()},
-           {"length_m", j.paths.front().motion.distance.back() - j.paths.front().motion.distance.front()},
-           {"probability", j.paths.front().probability},
-           {"paths", j.paths.size()},
-           {"entropy_nat", j.entropy},
-           {"tracks", tracks}});
+    for (auto& r : *recordings) {
+      // As the user wrote it: a folder's place is no part of a recording's name.
+      const std::string full = file.path.string();
+      if (r.name.starts_with(full)) r.name = file.written + r.name.substr(full.size());
+      add(std::move(r));
     }
-    out["recordings"].push_back(r);
+    return entry;
+  }
+
+  const GeorefConfig& config_;
+  const georef::Map& map_;
+  std::vector<Entry> entries_;
+};
+
+nlohmann::ordered_json summary_of(const GeorefConfig& config, const georef::Map& map,
+                                  const std::vector<GeorefOutcome>& outcomes, const std::vector<Error>& faults) {
+  nlohmann::ordered_json out;
+  if (!config.title.empty()) out["title"] = config.title;
+  out["network"] = {{"tracks", map.network.tracks.size()}, {"warnings", map.network.record.warnings.size()}};
+  out["faults"] = nlohmann::ordered_json::array();
+  for (const auto& f : faults) out["faults"].push_back(f.message());
+  out["recordings"] = nlohmann::ordered_json::array();
+  for (const auto& o : outcomes) {
+    nlohmann::ordered_json r{{"name", o.name}};
+    if (!o.result) r["error"] = o.result.error().message();
+    if (o.result) {
+      r["journeys"] = nlohmann::ordered_json::array();
+      for (const auto& j : o.result->journeys) {
+        nlohmann::ordered_json tracks = nlohmann::ordered_json::array();
+        for (const auto& t : j.paths.front().coordinates.path()) tracks.push_back(map.network.tracks[t.track].id);
+        r["journeys"].push_back(
+            {{"from_s", j.start.seconds()},
+             {"to_s", j.end().seconds()},
+             {"length_m", j.paths.front().motion.distance.back() - j.paths.front().motion.distance.front()},
+             {"probability", j.paths.front().probability},
+             {"paths", j.paths.size()},
+             {"entropy_nat", j.entropy},
+             {"tracks", tracks}});
+      }
+    }
+    out["recordings"].push_back(std::move(r));
   }
   return out;
+}
+
+Expected<void> add_inputs(io::Run& run, const GeorefConfig& c, const fs::path& job) {
+  const auto add = [&](const char* role, const std::string& written, const fs::path& path) -> Expected<void> {
+    auto file = io::describe_input(role, written, path);
+    // A recording that is not there is told among the faults; the rest has a result.
+    if (file) run.inputs.push_back(std::move(*file));
+    return {};
+  };
+  auto done = add("job", job.string(), job);
+  if (done) done = add("network", c.network.written, c.network.path);
+  if (done && !c.constraints_file.empty())
+    done = add("constraints", c.constraints_file.written, c.constraints_file.path);
+  for (const auto& r : c.recordings) done = add("recording", r.written, r.path);
+  for (const auto& r : c.tables) {
+    for (const InputPath* f : {&r.gnss.file, &r.imu.file, &r.speed.file, &r.odometer.file}) {
+      if (!f->empty()) done = add("recording", f->written, f->path);
+    }
+  }
+  return done;
+}
+
+/// Everything of the result folder but run.json.
+Expected<void> write_results(const GeorefConfig& c, const fs::path& folder, const georef::Map& map,
+                             const std::vector<GeorefOutcome>& outcomes, const std::vector<OnlineReplay>& online,
+                             Progress& progress) {
+  std::vector<const georef::RecordingResult*> results;
+  for (const auto& o : outcomes) results.push_back(o.result ? &*o.result : nullptr);
+  auto done = write_georef_tables(folder, map, outcomes, c.options, c.csv_interval);
+  if (done) done = write_georef_index(folder, map, outcomes);
+  if (done && c.hdf5) done = io::write_georef_hdf5(folder / "georef.h5", map, results);
+  if (done && c.gpkg) done = io::write_georef_gpkg(folder / "result.gpkg", map, results, c.csv_interval);
+  if (done && c.run_online) done = write_online_csv(folder, map, online);
+  if (done) done = stamp_monitoring(folder, map, outcomes, c.monitoring, progress);
+  return done;
 }
 
 }  // namespace
 
-Expected<std::unique_ptr<georef::Map>> load_map(const GeorefConfig& c) {
-  const auto source = io::read_network({c.network.path, c.layer, c.id_field, c.source_crs, c.osm_types});
-  if (!source) return tl::unexpected(source.error());
-  auto network = network::build(*source, {.crs = c.crs, .snap = c.snap, .largest_turn = c.largest_turn});
-  if (!network) return tl::unexpected(network.error());
-  return std::make_unique<georef::Map>(std::move(*network));
-}
-
-Expected<std::vector<georef::Recording>> load_recordings(const std::filesystem::path& path,
-                                                         std::vector<Error>& faults) {
-  if (begins_with(path, "\x89HDF\r\n\x1a\n")) {
-    auto file = io::read_onboard(path);
-    if (!file) return tl::unexpected(file.error());
-    faults.insert(faults.end(), file->faults.begin(), file->faults.end());
-    return std::move(file->recordings);
+Expected<GeorefRun> run_georef(const fs::path& job, std::span<const std::string> overrides, const fs::path& output,
+                               int threads, bool online, Progress& progress) {
+  auto config = read_job(job, overrides);
+  if (!config) return tl::unexpected(config.error());
+  config->run_online = online;
+  auto folder =
+      io::ResultFolder::create(output.empty() ? job.parent_path() / (job.stem().string() + ".result") : output);
+  if (!folder) return tl::unexpected(folder.error());
+  io::Run run{.command = "georef", .version = version()};
+  run.started_utc =
+      to_text({std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
+                   .count()},
+              TimeScale::utc);
+  auto last = Clock::now();
+  const auto stage = [&](const char* name) {
+    const auto now = Clock::now();
+    run.timings_s.emplace_back(name, std::chrono::duration<double>(now - last).count());
+    last = now;
+  };
+  progress.report("map", 0.0);
+  const auto map = load_map(*config);
+  if (!map) return tl::unexpected(map.error());
+  if (auto good = georef::check(**map, config->constraints); !good) {
+    Error error = good.error();
+    error.file = config->constraints_file.empty() ? job.string() : config->constraints_file.written;
+    return tl::unexpected(error);
   }
-  std::vector<georef::Recording> out;
-  if (is_brussels(path)) {
-    auto log = io::read_brussels_log(path);
-    if (!log) return tl::unexpected(log.error());
-    out.push_back(std::move(*log));
-    return out;
+  stage("map");
+  auto entries = Solver(*config, **map).run(threads, progress);
+  if (progress.cancelled()) return fail({.found = "cancelled"});
+  stage("journeys");
+  std::vector<GeorefOutcome> outcomes;
+  std::vector<OnlineReplay> replays;
+  GeorefRun out;
+  std::size_t journeys = 0, failed = 0;
+  for (auto& e : entries) {
+    out.faults.insert(out.faults.end(), e.faults.begin(), e.faults.end());
+    for (std::size_t i = 0; i < e.again.size(); ++i) {
+      if (const auto& r = e.outcomes[i].result) {
+        replays.push_back(replay_online(**map, std::move(e.again[i]), *r, config->options, config->online));
+      }
+    }
+    for (auto& o : e.outcomes) outcomes.push_back(std::move(o));
   }
-  io::GnssFile file;
-  file.table.path = path;
-  auto gnss = io::read_gnss(file);
-  if (!gnss) return tl::unexpected(gnss.error());
-  georef::Recording r;
-  r.name = path.string();
-  r.gnss = georef::to_fixes(gnss->series);
-  r.record = std::move(gnss->record);
-  out.push_back(std::move(r));
+  for (const auto& o : outcomes) {
+    if (o.result) {
+      journeys += o.result->journeys.size();
+      run.time_scale = o.result->scale;
+      run.record.append(o.result->record);
+    } else {
+      out.faults.push_back(o.result.error());
+      ++failed;
+    }
+  }
+  if (failed == outcomes.size()) return tl::unexpected(out.faults.front());
+  progress.report("writing", 0.0);
+  if (auto done = write_results(*config, folder->folder(), **map, outcomes, replays, progress); !done)
+    return tl::unexpected(done.error());
+  if (auto done = add_inputs(run, *config, job); !done) return tl::unexpected(done.error());
+  stage("write");
+  run.settings_json = config_json([&](ConfigVisitor& v) { describe(v, *config); });
+  run.results_json = summary_of(*config, **map, outcomes, out.faults).dump();
+  if (auto done = io::write_run_json(folder->path("run.json"), run); !done) return tl::unexpected(done.error());
+  out.folder = folder->target();
+  out.summary_json = io::run_json(run);
+  out.summary_text = fmt::format(
+      "{} recordings, {} journeys, {} failed; map {:.2f} s, journeys {:.2f} s, writing {:.2f} s\n", outcomes.size(),
+      journeys, failed, run.timings_s[0].second, run.timings_s[1].second, run.timings_s[2].second);
+  if (auto done = folder->commit(); !done) return tl::unexpected(done.error());
   return out;
 }
 
-Expected<GeorefSummary> run_georef(const GeorefConfig& config, const std::filesystem::path& folder,
-                                   Progress& progress) {
-  GeorefSummary summary;
-  auto begin = Clock::now();
-  progress.report("map", 0.0);
-  auto map = load_map(config);
-  if (!map) return tl::unexpected(map.error());
-  summary.seconds_map = since(begin);
-  begin = Clock::now();
-  for (std::size_t i = 0; i < config.recordings.size(); ++i) {
-    progress.report("journeys", static_cast<double>(i) / static_cast<double>(config.recordings.size()));
-    if (progress.cancelled()) return fail({.found = "cancelled"});
-    auto recordings = load_recordings(config.recordings[i].path, summary.faults);
-    if (!recordings) {
-      summary.outcomes.push_back({config.recordings[i].written, tl::unexpected(recordings.error())});
-      continue;
-    }
-    for (auto& r : *recordings) {
-      const std::string name = r.name;
-      georef::Recording again;
-      if (config.run_online) again = r;
-      summary.outcomes.push_back({name, georef::georeference(**map, std::move(r), config.options, config.constraints)});
-      if (const auto& result = summary.outcomes.back().result; result && config.run_online) {
-        summary.online.push_back(replay_online(**map, std::move(again), *result, config.options, config.online));
-      }
-    }
-  }
-  summary.seconds_solve = since(begin);
-  if (std::none_of(summary.outcomes.begin(), summary.outcomes.end(),
-                   [](const auto& o) { return o.result.has_value(); })) {
-    return tl::unexpected(summary.outcomes.empty() ? Error{.field = "recordings", .found = "none"}
-                                                   : summary.outcomes.front().result.error());
-  }
-
-  // Into a sibling, which then takes the place of the folder.
-  begin = Clock::now();
-  progress.report("writing", 0.9);
-  const auto fresh = folder.parent_path() / ("." + folder.filename().string() + ".new");
-  std::error_code code;
-  std::filesystem::remove_all(fresh, code);
-  std::filesystem::create_directories(fresh, code);
-  if (code)
-    return fail({.file = fresh.string(),
-                 .found = code.message(),
-                 .expected = "a folder that can be written",
-                 .advice = "choose another with --output"});
-  std::vector<const georef::RecordingResult*> results;
-  for (const auto& o : summary.outcomes) results.push_back(o.result ? &*o.result : nullptr);
-  auto done = write_georef_csv(fresh, **map, summary.outcomes, config.csv_interval);
-  if (done) done = io::write_georef_hdf5(fresh / "georef.h5", **map, results);
-  if (done) done = io::write_georef_gpkg(fresh / "result.gpkg", **map, results, config.csv_interval);
-  if (done && config.run_online) done = write_online_csv(fresh, **map, summary.online);
-  if (done) done = stamp_monitoring(fresh, **map, summary.outcomes, config.monitoring, progress);
-  if (!done) {
-    std::filesystem::remove_all(fresh, code);
-    return tl::unexpected(done.error());
-  }
-  summary.seconds_write = since(begin);
-  nlohmann::json run = summary_json(summary, **map);
-  GeorefConfig effective = config;
-  run["settings"] = nlohmann::json::parse(config_json([&](ConfigVisitor& v) { describe(v, effective); }));
-  std::ofstream(fresh / "run.json") << run.dump(1) << '\n';
-  std::filesystem::remove_all(folder, code);
-  std::filesystem::rename(fresh, folder, code);
-  if (code)
-    return fail({.file = folder.string(),
-                 .found = code.message(),
-                 .expected = "a result folder",
-                 .advice = "choose another with --output"});
-  return summary;
+namespace {
+void describe_defaults(ConfigVisitor& v) {
+  GeorefConfig config;
+  describe(v, config);
 }
+
+Expected<std::vector<std::string>> check_job(const fs::path& job, std::span<const std::string> overrides) {
+  const auto config = read_job(job, overrides);
+  if (!config) return tl::unexpected(config.error());
+  const auto map = load_map(*config);
+  if (!map) return tl::unexpected(map.error());
+  if (auto good = georef::check(**map, config->constraints); !good) return tl::unexpected(good.error());
+  std::vector<std::string> lines{fmt::format(
+      "map: {} tracks, {} joints, {} remarks ('versine network check' lists them)", (*map)->network.tracks.size(),
+      (*map)->network.joints.size(), (*map)->network.record.warnings.size())};
+  const auto add = [&](const georef::Recording& r) {
+    lines.push_back(
+        fmt::format("{}: {} fixes, {} IMU samples, {} speeds", r.name, r.gnss.size(), r.imu.size(), r.speed.size()));
+  };
+  for (const auto& file : config->recordings) {
+    std::vector<Error> faults;
+    const auto recordings = load_recordings(file.path, faults);
+    if (!recordings) return tl::unexpected(recordings.error());
+    for (const auto& r : *recordings) add(r);
+    for (const auto& f : faults) lines.push_back("left out: " + f.message());
+  }
+  for (const auto& c : config->tables) {
+    const auto r = load_recording(c);
+    if (!r) return tl::unexpected(r.error());
+    add(*r);
+  }
+  if (!config->constraints.empty()) lines.push_back(fmt::format("{} constraints", config->constraints.size()));
+  return lines;
+}
+}  // namespace
+
+const JobKind georef_job{"georef", "Recordings of in-service vehicles are put on the tracks of a railway map.",
+                         describe_defaults, check_job};
 
 }  // namespace versine::app

@@ -8,6 +8,7 @@
 #include <array>
 
 #include "versine/app/geometry_job.hpp"
+#include "versine/app/georef.hpp"
 #include "versine/app/plan.hpp"
 #include "versine/app/positioning_jobs.hpp"
 #include "versine/app/simulate_job.hpp"
@@ -24,7 +25,8 @@ std::string names() {
 }  // namespace
 
 std::span<const JobKind> job_kinds() {
-  static const std::array kinds{survey_job, geometry_job, calibrate_job, gnss_job, stationing_job, simulate_job, plan_job};
+  static const std::array kinds{survey_job,     geometry_job, calibrate_job, gnss_job,
+                                stationing_job, georef_job,   simulate_job,  plan_job};
   return kinds;
 }
 

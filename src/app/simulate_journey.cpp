@@ -60,7 +60,7 @@ Expected<JourneyNetwork> load_network(const JourneyConfig& c) {
 std::string georef_job_for(const JourneyConfig& c) {
   return fmt::format(
       "# Puts this simulated recording onto the map: versine georef georef.toml\n"
-      "recordings = [\"journey.h5\"]\n\n[network]\nfile = \"{}\"\n{}",
+      "job = \"georef\"\nrecordings = [\"journey.h5\"]\n\n[network]\nfile = \"{}\"\n{}",
       c.made ? "network.geojson" : c.file.path.string(), c.crs.empty() ? "" : fmt::format("crs = \"{}\"\n", c.crs));
 }
 

@@ -2,46 +2,29 @@
 #include "versine/app/georef.hpp"
 
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 
 #include "command.hpp"
+#include "terminal.hpp"
 
 namespace versine::cli {
 
 namespace {
 
 int run(const JobOptions& options, bool online) {
-  app::GeorefConfig config;
-  config.run_online = online;
-  const auto read = app::read_config(
-      options.job, [&](app::ConfigVisitor& v) { app::describe(v, config); }, options.set);
-  if (!read) return report(read.error());
-  std::filesystem::path folder = options.output;
-  if (folder.empty()) folder = std::filesystem::path(options.job).replace_extension("");
-  SilentProgress progress;
-  const auto summary = app::run_georef(config, std::filesystem::absolute(folder), progress);
-  if (!summary) return report(summary.error());
-  for (const auto& f : summary->faults) report(f);
-  std::size_t journeys = 0, failed = 0;
-  for (const auto& o : summary->outcomes) {
-    if (!o.result)
-      report(o.result.error()), ++failed;
-    else
-      journeys += o.result->journeys.size();
+  Expected<app::GeorefRun> done = fail({});
+  {
+    TerminalProgress progress(options.quiet || options.json);
+    done = app::run_georef(options.job, options.set, options.output, options.threads, online, progress);
   }
+  if (!done) return report(done.error());
+  for (const auto& f : done->faults) report(f);
   if (options.json) {
-    std::FILE* file = std::fopen((folder / "run.json").c_str(), "r");
-    for (int c = file != nullptr ? std::fgetc(file) : EOF; c != EOF; c = std::fgetc(file)) std::putchar(c);
-    if (file != nullptr) std::fclose(file);
+    std::printf("%s\n", done->summary_json.c_str());
   } else if (!options.quiet) {
-    std::printf(
-        "%zu recordings, %zu journeys, %zu failed; map %.2f s, journeys %.2f s, writing %.2f s; results in %s\n",
-        summary->outcomes.size(), journeys, failed, summary->seconds_map, summary->seconds_solve,
-        summary->seconds_write, folder.c_str());
-    for (const auto& replay : summary->online) std::printf("%s", app::online_text(replay).c_str());
+    std::printf("%sResult: %s\n", done->summary_text.c_str(), done->folder.string().c_str());
   }
-  return failed == 0 && summary->faults.empty() ? good : unacceptable;
+  return done->faults.empty() ? good : unacceptable;
 }
 
 }  // namespace

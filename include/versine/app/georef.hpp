@@ -3,18 +3,32 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "versine/app/config.hpp"
 #include "versine/app/georef_online.hpp"
+#include "versine/app/job_kinds.hpp"
+#include "versine/app/recording_config.hpp"
 #include "versine/core/progress.hpp"
+#include "versine/core/units.hpp"
 #include "versine/georef/georeference.hpp"
 #include "versine/georef/monitoring.hpp"
 #include "versine/io/network_file.hpp"
 #include "versine/network/build.hpp"
 
 namespace versine::app {
+
+extern const JobKind georef_job;  ///< `versine georef`
+
+/// A recording in several files, or in one whose columns need names.
+struct RecordingConfig {
+  std::string name;  ///< in results; empty: the GNSS file as written
+  GnssFileConfig gnss;
+  ImuFileConfig imu;
+  SpeedFileConfig speed;
+  OdometerFileConfig odometer;
+};
 
 /// `[[monitoring]]`: channels to be put on the track.
 struct MonitoringConfig {
@@ -28,19 +42,26 @@ struct MonitoringConfig {
 };
 
 struct GeorefConfig {
+  std::string job = "georef", title;
   InputPath network;
   std::string layer, id_field, source_crs, crs;
   std::vector<std::string> osm_types{"rail", "light_rail"};
-  double snap = 1.0, largest_turn = 0.5236;
+  double snap = 1.0, largest_turn = 30.0 * units::deg;
   std::vector<InputPath> recordings;
+  std::vector<RecordingConfig> tables;  ///< [[recording]]
   georef::Options options;
+  InputPath constraints_file;
   std::vector<georef::Constraint> constraints;
   std::vector<MonitoringConfig> monitoring;
   bool run_online = false;  ///< `--online`: replay the recordings through the online filter too
   georef::OnlineOptions online;
   double csv_interval = 1.0;  ///< s between rows of positions.csv and points of the GeoPackage
+  bool hdf5 = true, gpkg = true;
 };
 void describe(ConfigVisitor& v, GeorefConfig& c);
+
+/// Adds what the constraints file of a job says to its own constraints. Layout: docs/formats-georef.md.
+[[nodiscard]] Expected<void> load_constraints(GeorefConfig& config);
 
 /// One recording of a job, or why there is no result for it.
 struct GeorefOutcome {
@@ -54,25 +75,32 @@ struct GeorefOutcome {
 /// io/read_recording.hpp. Parts of the file that cannot be read go to `faults`.
 [[nodiscard]] Expected<std::vector<georef::Recording>> load_recordings(const std::filesystem::path& path,
                                                                        std::vector<Error>& faults);
+/// A recording in several files.
+[[nodiscard]] Expected<georef::Recording> load_recording(const RecordingConfig& config);
 
-struct GeorefSummary {
-  std::vector<GeorefOutcome> outcomes;
-  std::vector<OnlineReplay> online;  ///< with --online
-  std::vector<Error> faults;
-  double seconds_map = 0.0, seconds_solve = 0.0, seconds_write = 0.0;
+struct GeorefRun {
+  std::filesystem::path folder;
+  std::string summary_text, summary_json;
+  std::vector<Error> faults;  ///< recordings, or parts of them, without a result
 };
-/// The job: map, recordings, results in `folder` (positions.csv, paths.csv, georef.h5, result.gpkg, run.json), which
-/// appears whole or not at all. A recording that fails is reported and the rest is processed; fails when all do.
-[[nodiscard]] Expected<GeorefSummary> run_georef(const GeorefConfig& config, const std::filesystem::path& folder,
-                                                 Progress& progress);
+/// The job: map, recordings on `threads` threads (0: all cores), with `online` also replayed
+/// through the online filter, results in a folder that appears whole or not at all.
+/// A recording that fails is reported and the rest is processed; fails when all do.
+[[nodiscard]] Expected<GeorefRun> run_georef(const std::filesystem::path& job, std::span<const std::string> overrides,
+                                             const std::filesystem::path& output, int threads, bool online,
+                                             Progress& progress);
 
 /// monitoring_N.h5 in `folder` for each monitoring file of the job; reads them block by block.
 [[nodiscard]] Expected<void> stamp_monitoring(const std::filesystem::path& folder, const georef::Map& map,
                                               const std::vector<GeorefOutcome>& outcomes,
                                               const std::vector<MonitoringConfig>& files, Progress& progress);
 
-/// positions.csv, paths.csv, switches.csv, residuals.csv. Layout: docs/formats-georef.md.
-[[nodiscard]] Expected<void> write_georef_csv(const std::filesystem::path& folder, const georef::Map& map,
-                                              const std::vector<GeorefOutcome>& outcomes, double interval);
+/// positions.csv, fixes.csv, paths.csv, switches.csv. Layout of these and the next: docs/formats-georef.md.
+[[nodiscard]] Expected<void> write_georef_tables(const std::filesystem::path& folder, const georef::Map& map,
+                                                 const std::vector<GeorefOutcome>& outcomes,
+                                                 const georef::Options& options, double interval);
+/// georef.json and network.geojson.
+[[nodiscard]] Expected<void> write_georef_index(const std::filesystem::path& folder, const georef::Map& map,
+                                                const std::vector<GeorefOutcome>& outcomes);
 
 }  // namespace versine::app

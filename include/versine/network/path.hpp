@@ -25,6 +25,10 @@ class PathCoordinates {
   /// Distance at which the i-th track begins; starts().back() is length().
   [[nodiscard]] const std::vector<double>& starts() const { return starts_; }
 
+  /// Vertices, map m relative to Network::origin, and the distance of each.
+  [[nodiscard]] std::span<const Eigen::Vector2d> points() const { return points_; }
+  [[nodiscard]] std::span<const double> distances() const { return distances_; }
+
   /// phi(P, d) of eq. 2: map point relative to Network::origin. Beyond the ends along the first or last segment.
   [[nodiscard]] Eigen::Vector2d position(double d) const;
   /// The same for increasing d: `hint` is where the search starts, 0 at first; it is moved along.
