@@ -80,11 +80,11 @@ class PathFilter {
     if (steps > 0) predict(e, steps);
     if (e.position) renew_colour(e);
     measure(e, 0);
-    s.log_likelihood += out_.log_likelihood;
+    s.log_likelihood += out_.evidence.likelihood();
     s.x = x_, s.P = P_, s.across = across_, s.across_variance = across_variance_;
     s.last_sigma = last_sigma_, s.astray = astray_;
     if (!out_.residuals.empty()) s.nis = out_.residuals.back().nis, s.weight = out_.residuals.back().weight;
-    out_.log_likelihood = 0.0;
+    out_.evidence = {};
     out_.residuals.clear();
   }
 
