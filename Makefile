@@ -4,7 +4,7 @@ JOBS ?= $(shell nproc)
 BUILD := build/release
 VERSINE := $(BUILD)/apps/versine/versine
 
-.PHONY: all setup build test demo screenshots report-images accuracy figures benchmarks format clean accuracy-positioning
+.PHONY: all setup build test demo screenshots report-images accuracy figures benchmarks format clean accuracy-positioning accuracy-georef
 all: build
 
 setup:
@@ -77,6 +77,14 @@ accuracy-positioning: setup
 # Pages of reports as pictures (docs/report.md); with VERSINE_DATA also of the Brussels journeys.
 report-images: build
 	benchmarks/report_images.sh $(VERSINE) docs/images
+
+# Georeferencing: real logs, and 500 simulated journeys on each of two networks (docs/accuracy.md); needs the programs of
+# benchmarks/.
+accuracy-georef: build
+	cmake --preset release -DVERSINE_BENCHMARKS=ON
+	cmake --build $(BUILD) -j $(JOBS) --target versine_georef_brussels versine_georef_accuracy
+	$(BUILD)/benchmarks/versine_georef_brussels $${VERSINE_DATA:-../shared/data}
+	$(BUILD)/benchmarks/versine_georef_accuracy --data $${VERSINE_DATA:-../shared/data} --svg docs/images/georef-reliability.svg
 
 format:
 	git ls-files '*.cpp' '*.hpp' | xargs clang-format -i

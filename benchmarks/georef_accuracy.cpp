@@ -10,6 +10,7 @@
 #include <cstring>
 #include <fstream>
 #include <mutex>
+#include <span>
 #include <thread>
 
 #include "versine/core/units.hpp"
@@ -68,8 +69,7 @@ double thread_seconds() {
 /// Simulates and judges the journeys of one thread; each has a map of its own, since a projection is not shared.
 class Driver {
  public:
-  Driver(const Place& place, const Receiver& receiver, bool verbose)
-      : place_(place), receiver_(receiver), verbose_(verbose), map_(*network::build(place.source)) {
+  Driver(const Place& place, bool verbose) : place_(place), verbose_(verbose), map_(*network::build(place.source)) {
     if (place.centre) centre_ = map_.network.to_map(*place.centre);
     if (place.centre) return;
     Vector2d low(INFINITY, INFINITY), high = -low;
@@ -79,21 +79,35 @@ class Driver {
     centre_ = 0.5 * (low + high);
   }
 
-  void run(std::uint64_t seed, Score& score) {
+  /// One journey, as each receiver records it.
+  void run(std::uint64_t seed, std::span<const Receiver> receivers, std::vector<Score>& scores) {
     simulation::RandomStream random(seed, "journeys");
-    std::shared_ptr<const simulation::World> world;
-    while (!world) {
+    std::shared_ptr<const simulation::World> driven;
+    while (!driven) {
       auto made = simulation::prepare_journey(map_.network, scenario(random));
-      if (made) world = *made;
+      if (made) driven = *made;
     }
-    auto truth = simulation::observe(*world, seed);
-    const auto recording = recording_of(truth, random);
+    auto world = *driven;
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+      const Receiver& receiver = receivers[i];
+      world.equipment.gnss->sigma_horizontal = receiver.white;
+      world.equipment.gnss->correlated_horizontal = receiver.coloured;
+      world.equipment.gnss->correlation_time = receiver.correlation_time;
+      solve(world, receiver, seed, scores[i]);
+    }
+  }
+
+ private:
+  void solve(const simulation::World& world, const Receiver& receiver, std::uint64_t seed, Score& score) const {
+    const auto truth = simulation::observe(world, seed);
+    simulation::RandomStream random(seed, "bridges");
+    const auto recording = recording_of(truth, receiver, random);
     georef::Options options;
-    options.gnss.correlation_time = receiver_.told_time;
+    options.gnss.correlation_time = receiver.told_time;
     const double begin = thread_seconds();
-    auto result = georef::georeference(map_, recording, options);
+    const auto result = georef::georeference(map_, recording, options);
     score.seconds += thread_seconds() - begin;
-    score.hours += world->duration / 3600.0;
+    score.hours += world.duration / 3600.0;
     if (!result) {
       ++score.failed;
       std::fprintf(stderr, "%s %lu: %s\n", place_.name.c_str(), seed, result.error().message().c_str());
@@ -102,7 +116,6 @@ class Driver {
     for (const auto& j : result->journeys) judge(j, truth, seed, score);
   }
 
- private:
   [[nodiscard]] bool inside(const Vector2d& p) const { return !place_.centre || (p - centre_).norm() < place_.radius; }
   [[nodiscard]] bool under_bridge(const Vector2d& p) const {
     const double x = (p - centre_)[place_.across];
@@ -135,9 +148,6 @@ class Driver {
     simulation::GnssModel gnss;
     gnss.rate = 5.0;
     gnss.antenna = {0.0, 0.0, -2.0};
-    gnss.sigma_horizontal = receiver_.white;
-    gnss.correlated_horizontal = receiver_.coloured;
-    gnss.correlation_time = receiver_.correlation_time;
     gnss.sigma_velocity = 0.08;
     gnss.sigma_factor = optimism;
     s.equipment.gnss = gnss;
@@ -155,7 +165,8 @@ class Driver {
   }
 
   /// As the vehicle's recorder wrote it; under a bridge the receiver errs by metres and tells half of it.
-  georef::Recording recording_of(const simulation::SimulatedRecording& r, simulation::RandomStream& random) const {
+  georef::Recording recording_of(const simulation::SimulatedRecording& r, const Receiver& receiver,
+                                 simulation::RandomStream& random) const {
     georef::Recording out;
     out.name = "simulated";
     out.gnss = georef::to_fixes(r.gnss);
@@ -170,12 +181,12 @@ class Driver {
                                             Vector2d(random.normal(), random.normal()));
       f.sigma *= 2.0;
     }
-    if (!receiver_.imu) return out;
+    if (!receiver.imu) return out;
     const double rate = 1.0 / r.imu.interval.seconds();
-    out.has_turn_rate = receiver_.turn_rate;
+    out.has_turn_rate = receiver.turn_rate;
     for (const auto& s : r.imu) {
       out.imu.samples.push_back(
-          {s.time, rate * s.dvel, receiver_.turn_rate ? Eigen::Vector3d(rate * s.dtheta) : Eigen::Vector3d::Zero()});
+          {s.time, rate * s.dvel, receiver.turn_rate ? Eigen::Vector3d(rate * s.dtheta) : Eigen::Vector3d::Zero()});
     }
     return out;
   }
@@ -253,7 +264,6 @@ class Driver {
   }
 
   const Place& place_;
-  const Receiver& receiver_;
   bool verbose_;
   georef::Map map_;
   Vector2d centre_ = Vector2d::Zero();
@@ -267,19 +277,20 @@ void add(Score& to, const Score& s) {
   to.switches.insert(to.switches.end(), s.switches.begin(), s.switches.end());
 }
 
-Score drive(const Place& place, const Receiver& receiver, std::uint64_t journeys, int threads, bool verbose) {
-  Score sum;
+std::vector<Score> drive(const Place& place, std::span<const Receiver> receivers, std::uint64_t journeys, int threads,
+                         bool verbose) {
+  std::vector<Score> sum(receivers.size());
   std::atomic<std::uint64_t> next{1};
   std::mutex mutex;
   std::vector<std::thread> pool;
   for (int t = 0; t < threads; ++t) {
     pool.emplace_back([&] {
-      Driver driver(place, receiver, verbose);
+      Driver driver(place, verbose);
       for (std::uint64_t seed = next++; seed <= journeys; seed = next++) {
-        Score one;
-        driver.run(seed, one);
+        std::vector<Score> one(receivers.size());
+        driver.run(seed, receivers, one);
         const std::scoped_lock lock(mutex);
-        add(sum, one);
+        for (std::size_t i = 0; i < one.size(); ++i) add(sum[i], one[i]);
       }
     });
   }
@@ -371,10 +382,12 @@ int main(int argc, char** argv) {
       "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
   std::string reliabilities;
   for (const auto& place : places) {
-    for (const auto& receiver : receivers) {
+    if (place.name.find(only) == std::string::npos) continue;
+    const auto scores = drive(place, receivers, journeys, threads, verbose);
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+      const Receiver& receiver = receivers[i];
+      const Score& s = scores[i];
       const std::string name = place.name + ", " + receiver.name;
-      if (name.find(only) == std::string::npos) continue;
-      const Score s = drive(place, receiver, journeys, threads, verbose);
       const auto n = static_cast<double>(s.n_good + s.n_bad), count = static_cast<double>(s.journeys);
       std::printf("| %s | %s | %zu | %.2f %% | %.3f m | %.3f m | %.1f %% | %.2f | %.1f | %.1f ms |\n",
                   place.name.c_str(), receiver.name.c_str(), s.journeys, 100.0 * static_cast<double>(s.right) / count,
@@ -383,7 +396,8 @@ int main(int argc, char** argv) {
                   s.normalised / n, static_cast<double>(s.hypotheses) / count, 1000.0 * s.seconds / count);
       std::fflush(stdout);
       std::string text;
-      figure.curves.push_back(reliability(name, s.paths, text));
+      auto curve = reliability(name, s.paths, text);
+      if (!receiver.imu || receiver.white > 1.0) figure.curves.push_back(std::move(curve));
       reliabilities += "paths, " + name + ":" + text + "\n";
       text.clear();
       static_cast<void>(reliability("", s.switches, text));

@@ -253,6 +253,7 @@ Expected<GeorefRun> run_georef(const fs::path& job, std::span<const std::string>
   out.summary_text = fmt::format(
       "{} recordings, {} journeys, {} failed; map {:.2f} s, journeys {:.2f} s, writing {:.2f} s\n", outcomes.size(),
       journeys, failed, run.timings_s[0].second, run.timings_s[1].second, run.timings_s[2].second);
+  for (const auto& r : replays) out.summary_text += online_text(r);
   if (auto done = folder->commit(); !done) return tl::unexpected(done.error());
   return out;
 }

@@ -72,6 +72,7 @@ std::vector<JourneySpan> find_journeys(const Recording& r, const JourneyOptions&
   const auto speed = speeds(r);
   std::vector<JourneySpan> out;
   const auto at = [&](std::size_t i) { return fixes[i].time; };
+  const auto unbroken = [&](std::size_t i) { return (at(i) - at(i - 1)).seconds() <= options.longest_gap; };
   constexpr double stop = 3.0, lead = 20.0;  // s: shortest standstill, and how much of it is kept
   std::size_t i = 0, previous_end = 0;
   bool moved = false;  // since the last journey
@@ -83,7 +84,7 @@ std::vector<JourneySpan> find_journeys(const Recording& r, const JourneyOptions&
     double fastest = 0.0;
     bool gap = false;
     for (; i < fixes.size(); ++i) {
-      if (i > begin && (at(i) - at(i - 1)).seconds() > options.longest_gap) {
+      if (i > begin && !unbroken(i)) {
         gap = true;
         record.findings.push_back({"gnss", "gap", at(i - 1), at(i), 1, Finding::Action::split,
                                    fmt::format("{:.0f} s without a fix", (at(i) - at(i - 1)).seconds())});
@@ -96,13 +97,18 @@ std::vector<JourneySpan> find_journeys(const Recording& r, const JourneyOptions&
         break;
       }
     }
-    JourneySpan span{begin, end, begin > previous_end, !gap && i < fixes.size(), {}};
+    JourneySpan span{.first = begin,
+                     .last = end,
+                     .starts_standing = begin > previous_end && unbroken(begin),
+                     .ends_standing = !gap && i < fixes.size()};
     // The vehicle may have started long after its last standing fix, when that one was before a tunnel.
     const Time stands_until = span.starts_standing ? at(begin - 1) : Time{};
     const Time stands_from = span.ends_standing ? at(end + 1) : Time{};
-    while (span.first > previous_end && (stands_until - at(span.first - 1)).seconds() < lead) --span.first;
-    while (span.last + 1 < fixes.size() && speed[span.last + 1] < options.standing &&
-           (at(span.last + 1) - stands_from).seconds() < lead) {
+    while (span.starts_standing && span.first > previous_end && unbroken(span.first) &&
+           (stands_until - at(span.first - 1)).seconds() < lead)
+      --span.first;
+    while (span.ends_standing && span.last + 1 < fixes.size() && unbroken(span.last + 1) &&
+           speed[span.last + 1] < options.standing && (at(span.last + 1) - stands_from).seconds() < lead) {
       ++span.last;
     }
     if (span.starts_standing) span.stops.push_back({at(span.first) - Duration::from_seconds(5.0), stands_until});

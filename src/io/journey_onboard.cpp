@@ -6,33 +6,18 @@
 
 #include <cmath>
 
+#include "hdf5_handle.hpp"
 #include "versine/core/units.hpp"
 
 namespace versine::io {
 
 namespace {
 
-/// An HDF5 identifier that is closed by its own function.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  operator hid_t() const { return id_; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
 std::optional<std::vector<double>> column(hid_t group, const char* name) {
   if (H5Lexists(group, name, H5P_DEFAULT) <= 0) return std::nullopt;
-  const Handle set(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle set(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose);
   if (set < 0) return std::nullopt;
-  const Handle space(H5Dget_space(set), H5Sclose);
+  const Hdf5Handle space(H5Dget_space(set), H5Sclose);
   const auto n = H5Sget_simple_extent_npoints(space);
   if (n < 0) return std::nullopt;
   std::vector<double> out(static_cast<std::size_t>(n));
@@ -61,7 +46,7 @@ georef::Recording read_group(hid_t file, const std::string& name) {
   georef::Recording out;
   const std::string gnss_name = name + "/GNSS", imu_name = name + "/IMU";
   if (H5Lexists(file, gnss_name.c_str(), H5P_DEFAULT) <= 0) throw Missing{gnss_name, "no such group"};
-  const Handle gnss(H5Gopen2(file, gnss_name.c_str(), H5P_DEFAULT), H5Gclose);
+  const Hdf5Handle gnss(H5Gopen2(file, gnss_name.c_str(), H5P_DEFAULT), H5Gclose);
   const auto times = needed(gnss, gnss_name + "/", "times", 0);
   const std::size_t n = times.size();
   const auto lon = needed(gnss, gnss_name + "/", "lon", n), lat = needed(gnss, gnss_name + "/", "lat", n);
@@ -78,7 +63,7 @@ georef::Recording read_group(hid_t file, const std::string& name) {
     out.gnss.samples.push_back(f);
   }
   if (H5Lexists(file, imu_name.c_str(), H5P_DEFAULT) <= 0) return out;
-  const Handle imu(H5Gopen2(file, imu_name.c_str(), H5P_DEFAULT), H5Gclose);
+  const Hdf5Handle imu(H5Gopen2(file, imu_name.c_str(), H5P_DEFAULT), H5Gclose);
   const auto t = needed(imu, imu_name + "/", "times", 0);
   const auto x = needed(imu, imu_name + "/", "acc_x", t.size()), y = needed(imu, imu_name + "/", "acc_y", t.size());
   const auto z = needed(imu, imu_name + "/", "acc_z", t.size());
@@ -98,7 +83,7 @@ georef::Recording read_group(hid_t file, const std::string& name) {
 
 Expected<OnboardFile> read_onboard(const std::filesystem::path& path) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  const Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (file < 0) {
     return fail({.file = path.string(),
                  .found = "a file that HDF5 cannot read",

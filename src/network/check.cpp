@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "versine/network/oriented_graph.hpp"
+#include "versine/network/spatial_index.hpp"
 
 namespace versine::network {
 
@@ -26,6 +27,28 @@ void check_joint(const Network& n, const OrientedGraph& g, const Joint& j, MapCh
     if (ways == 0 && j.ends.size() > 1) out.findings.push_back({"no way through", j.place, n.tracks[e.track].id, 0.0});
   }
   if (j.ends.size() == 3 && most == 2) ++out.switches;
+}
+
+/// A line drawn twice: every place of the track lies within half a metre of one and the same other track. The middle
+/// comes first, since hardly any track passes even there.
+void check_duplicates(const Network& n, MapCheck& out) {
+  constexpr double near = 0.5, step = 50.0;
+  const SpatialIndex index(n);
+  for (TrackIndex t = 0; t < n.tracks.size(); ++t) {
+    const auto& line = n.tracks[t].line;
+    if (line.length() < 5.0) continue;
+    for (const auto& hit : index.near(line.position(0.5 * line.length()), near)) {
+      if (hit.track >= t) continue;  // each pair once
+      const auto& other = n.tracks[hit.track].line;
+      const int samples = std::max(4, static_cast<int>(line.length() / step));
+      bool along = true;
+      for (int i = 0; along && i <= samples; ++i) {
+        along = other.project(line.position(line.length() * i / samples)).offset < near;
+      }
+      if (along)
+        out.findings.push_back({"duplicated track", line.position(0.5 * line.length()), n.tracks[t].id, line.length()});
+    }
+  }
 }
 
 void check_pieces(const Network& n, MapCheck& out) {
@@ -63,6 +86,7 @@ MapCheck check(const Network& n, double kink) {
       if (angle > kink) out.findings.push_back({"kink", p[i], t.id, angle});
     }
   }
+  check_duplicates(n, out);
   check_pieces(n, out);
   return out;
 }

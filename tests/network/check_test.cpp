@@ -34,6 +34,28 @@ TEST(Check, FindsNearMissesIsolatedPiecesAndKinks) {
   EXPECT_EQ(count("near miss"), 1);
   EXPECT_EQ(count("isolated piece"), 1);
   EXPECT_EQ(count("kink"), 1);
+  EXPECT_EQ(count("duplicated track"), 0);
+}
+
+TEST(Check, FindsTracksDrawnTwice) {
+  NetworkSource s;
+  s.crs = "EPSG:32632";
+  const Eigen::Vector2d o(500000.0, 5500000.0);
+  const auto line = [&](const char* id, std::vector<Eigen::Vector2d> p) {
+    for (auto& q : p) q += o;
+    s.tracks.push_back({id, p, 0, {}, {}, {}});
+  };
+  line("a", {{0, 0}, {300, 0}, {600, 20}});
+  line("b", {{0, 4}, {300, 4}, {600, 24}});
+  line("a again", {{600, 20.2}, {300, 0.2}, {0, 0.2}});
+  const auto n = build(s);
+  ASSERT_TRUE(n);
+  const auto c = check(*n);
+  std::vector<std::string> twice;
+  for (const auto& f : c.findings) {
+    if (f.kind == "duplicated track") twice.push_back(f.track);
+  }
+  EXPECT_EQ(twice, std::vector<std::string>{"a again"});
 }
 
 }  // namespace

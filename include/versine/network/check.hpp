@@ -9,11 +9,11 @@ namespace versine::network {
 
 /// Something about a map that a person should look at.
 struct MapFinding {
-  std::string
-      kind;  ///< "near miss", "isolated piece", "dead end", "unlabelled four-armed node", "no way through", "kink"
+  std::string kind;  ///< "near miss", "isolated piece", "dead end", "unlabelled four-armed node", "no way through",
+                     ///< "kink", "duplicated track"
   Eigen::Vector2d place;  ///< map m relative to Network::origin
   std::string track;      ///< one of the tracks concerned
-  double value = 0.0;     ///< near miss: m; isolated piece: its length, m; kink: rad; else 0
+  double value = 0.0;     ///< near miss: m; isolated piece, duplicated track: its length, m; kink: rad; else 0
 };
 
 struct MapCheck {
