@@ -43,6 +43,7 @@ Expected<std::string> config_digest(const GeorefConfig& config) {
   }
   GeorefConfig c = config;
   c.network = {};
+  c.title.clear();
   c.recordings.clear();
   return io::sha256(config_json([&](ConfigVisitor& v) { describe(v, c); }) + "\n" + digests);
 }
@@ -130,7 +131,8 @@ Outcome<batch::Job> batch_job(const fs::path& job) {
   if (!config) return failure(Exit::usage, config.error());
   // A unit is its input's content: what names single recordings cannot be part of all units.
   for (const auto& [key, present] :
-       {std::pair("monitoring", !config->monitoring.empty()), std::pair("constraints", !config->constraints.empty())}) {
+       {std::pair("monitoring", !config->monitoring.empty()), std::pair("constraints", !config->constraints.empty()),
+        std::pair("recording", !config->tables.empty())}) {
     if (!present) continue;
     return failure(Exit::usage, {.file = job.string(),
                                  .field = key,
