@@ -304,6 +304,7 @@ Expected<GeometryRun> run_geometry(const std::filesystem::path& job, std::span<c
       !done) {
     return tl::unexpected(done.error());
   }
+  if (auto done = check_report(config.report); !done) return tl::unexpected(done.error());
   if (!config.trajectory.given()) {
     return fail({.file = job.string(),
                  .field = "trajectory.file",

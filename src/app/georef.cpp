@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "versine/app/report.hpp"
 #include "versine/app/version.hpp"
 #include "versine/core/calendar.hpp"
 #include "versine/io/georef_result.hpp"
@@ -189,6 +190,7 @@ Expected<GeorefRun> run_georef(const fs::path& job, std::span<const std::string>
                                int threads, bool online, Progress& progress) {
   auto config = read_job(job, overrides);
   if (!config) return tl::unexpected(config.error());
+  if (auto done = check_report(config->report); !done) return tl::unexpected(done.error());
   config->run_online = online;
   auto folder =
       io::ResultFolder::create(output.empty() ? job.parent_path() / (job.stem().string() + ".result") : output);
@@ -254,6 +256,9 @@ Expected<GeorefRun> run_georef(const fs::path& job, std::span<const std::string>
       "{} recordings, {} journeys, {} failed; map {:.2f} s, journeys {:.2f} s, writing {:.2f} s\n", outcomes.size(),
       journeys, failed, run.timings_s[0].second, run.timings_s[1].second, run.timings_s[2].second);
   for (const auto& r : replays) out.summary_text += online_text(r);
+  if (auto done = write_job_report(config->report, folder->folder(), folder->target()); !done) {
+    return tl::unexpected(done.error());
+  }
   if (auto done = folder->commit(); !done) return tl::unexpected(done.error());
   return out;
 }

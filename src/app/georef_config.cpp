@@ -166,6 +166,9 @@ void describe(ConfigVisitor& v, GeorefConfig& c) {
     t.value("hypotheses", most, {.doc = "Kept at most.", .min = 2, .max = 1000});
     c.online.hypotheses = static_cast<std::size_t>(most);
   });
+  v.table(
+      "report", "A report beside the result (docs/report.md); without this table none is made.",
+      [&](ConfigVisitor& t) { describe(t, c.report, false); }, &c.report.present);
   v.table("output", "Results.", [&](ConfigVisitor& t) {
     t.value("csv_interval_s", c.csv_interval,
             {.doc = "Between rows of positions.csv and points of the GeoPackage; the HDF5 file has every grid step.",

@@ -94,6 +94,7 @@ Expected<PlanRun> run_plan(const std::filesystem::path& job, std::span<const std
                            const std::filesystem::path& output, int monte_carlo, int threads, Progress& progress) {
   auto config = read_plan_config(job, overrides);
   if (!config) return tl::unexpected(config.error());
+  if (auto done = check_report(config->report); !done) return tl::unexpected(done.error());
   if (monte_carlo >= 0) config->monte_carlo.runs = monte_carlo;
   auto folder =
       io::ResultFolder::create(output.empty() ? std::filesystem::path(job).replace_extension(".result") : output);

@@ -148,6 +148,13 @@ Expected<std::vector<std::filesystem::path>> write_report(const std::filesystem:
   return files;
 }
 
+Expected<void> check_report(const ReportConfig& config) {
+  if (!config.present) return {};
+  if (auto done = check_formats(config.formats); !done) return done;
+  if (const auto texts = report::Texts::load(config.language); !texts) return tl::unexpected(texts.error());
+  return {};
+}
+
 Expected<void> write_job_report(const ReportConfig& config, const std::filesystem::path& folder,
                                 const std::filesystem::path& target) {
   if (!config.present) return {};

@@ -6,6 +6,7 @@
 #include <chrono>
 
 #include "versine/app/progress_file.hpp"
+#include "versine/app/report.hpp"
 #include "versine/app/survey_landmark.hpp"
 #include "versine/app/survey_output.hpp"
 #include "versine/app/withhold.hpp"
@@ -92,6 +93,7 @@ Expected<SurveyRun> run_survey(const std::filesystem::path& job, std::span<const
                                const std::filesystem::path& output, Progress& progress, Log& log) {
   auto config = read_survey_config(job, overrides);
   if (!config) return tl::unexpected(config.error());
+  if (auto done = check_report(config->report); !done) return tl::unexpected(done.error());
   std::filesystem::path folder = output;
   if (folder.empty()) {
     folder = config->output.folder.empty() ? std::filesystem::path(job).replace_extension(".result")

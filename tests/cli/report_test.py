@@ -43,6 +43,9 @@ class Report(Case):
         self.assertIn("A. Meyer", page)
         self.assertNotIn(".new-", page)  # the folder's name is that of the result, not of its making
 
+    def test_a_wrong_format_is_told_before_the_work(self):
+        self.refused("survey", "job.toml", "--set", 'report.formats=["doc"]', says=["html, pdf, xlsx"])
+
     def test_a_plan(self):
         (self.folder / "plan.toml").write_text((SOURCE / "examples/plan/jiang_rlg.toml").read_text())
         self.versine("plan", "plan.toml", "-o", "plan", "--set", "monte_carlo.runs=0")

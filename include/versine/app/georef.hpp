@@ -10,6 +10,7 @@
 #include "versine/app/georef_online.hpp"
 #include "versine/app/job_kinds.hpp"
 #include "versine/app/recording_config.hpp"
+#include "versine/app/report_config.hpp"
 #include "versine/core/progress.hpp"
 #include "versine/core/units.hpp"
 #include "versine/georef/georeference.hpp"
@@ -56,6 +57,7 @@ struct GeorefConfig {
   bool run_online = false;  ///< `--online`: replay the recordings through the online filter too
   georef::OnlineOptions online;
   double csv_interval = 1.0;  ///< s between rows of positions.csv and points of the GeoPackage
+  ReportConfig report;
   bool hdf5 = true, gpkg = true;
 };
 void describe(ConfigVisitor& v, GeorefConfig& c);

@@ -27,6 +27,8 @@ struct ReportRequest {
 /// The document itself, without writing anything.
 [[nodiscard]] Expected<report::Document> make_report(const std::filesystem::path& result, const ReportRequest& request);
 
+/// Formats and language of a job, before its work begins.
+[[nodiscard]] Expected<void> check_report(const ReportConfig& config);
 /// For a job that has written its folder, run.json included, and is about to commit it: makes the report when the job
 /// asks for one.
 [[nodiscard]] Expected<void> write_job_report(const ReportConfig& config, const std::filesystem::path& folder,
