@@ -99,12 +99,22 @@ export function gpxOf({ result, axis, marks }: Exported): string {
   return `<?xml version="1.0" encoding="UTF-8"?>\n<gpx version="1.1" creator="Versine" xmlns="http://www.topografix.com/GPX/1/1">\n${points.join('')}</gpx>\n`;
 }
 
-/** On paper everything is light; the theme comes back when the print dialog is closed. */
+/** On paper everything is light, and as wide as a page; screen and theme come back when the print dialog is closed. */
 function print(what: Exported): void {
   const restore = withTheme('light');
+  const page = document.documentElement.classList;
+  page.add('printing');
   what.redraw();
-  addEventListener('afterprint', () => { restore(); what.redraw(); }, { once: true });
-  setTimeout(() => window.print(), 150); // after the redrawing
+  addEventListener(
+    'afterprint',
+    () => {
+      page.remove('printing');
+      restore();
+      what.redraw();
+    },
+    { once: true },
+  );
+  setTimeout(() => window.print(), 300); // after the redrawing
 }
 
 export function showExports(what: Exported): void {

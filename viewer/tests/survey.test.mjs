@@ -254,6 +254,16 @@ test('exports hold what is seen', async () => {
   assert.equal(gpx.match(/<wpt /g).length, 4);
   assert.match(gpx, /lat="50\.5\d+" lon="9\.0\d+"><name>IAL Twist 12\+750/);
   assert.ok((await save('PNG')).length > 10000);
+  // On paper: light, one page, and the screen comes back as it was.
+  await page.evaluate(() => (window.print = () => (document.documentElement.dataset.printed = 'true')));
+  await page.keyboard.press('e');
+  await page.click('dialog button:has-text("PDF")');
+  await page.waitForSelector('html[data-printed]');
+  assert.equal(await page.getAttribute('html', 'data-theme'), 'light');
+  const pdf = (await page.pdf({ preferCSSPageSize: true, printBackground: true })).toString('latin1');
+  assert.equal(pdf.match(/\/Type \/Page\b/g).length, 1);
+  await page.evaluate(() => dispatchEvent(new Event('afterprint')));
+  assert.equal(await page.getAttribute('html', 'data-theme'), 'dark');
   await page.context().close();
 });
 
