@@ -30,6 +30,9 @@ export interface Extras {
   companion: SeriesStore | null; // another quantity on its own scale
 }
 
+/** The number that stood in the file: seven digits survive single precision, and rounding must start from them. */
+const written = (value: number) => Number(value.toPrecision(7));
+
 /** What is on the strip now. */
 interface Drawn {
   mine: Series;
@@ -155,8 +158,9 @@ export class Strip {
   }
 
   /** The value beside the strip with its 95 % interval and the limit it is over; returns what to say. */
-  showReading(reading: Reading | null, companion: Reading | null): string {
+  showReading(sample: Reading | null, companion: Reading | null): string {
     const { digits, unit, title } = this.info;
+    const reading = sample && { value: written(sample.value), sigma: written(sample.sigma) };
     if (!reading || !Number.isFinite(reading.value)) {
       this.value.textContent = '–';
       this.half.textContent = '';
