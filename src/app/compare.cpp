@@ -16,10 +16,12 @@ namespace {
 struct Collector {
   std::vector<double> magnitude;
   std::size_t covered = 0;
+  double normalised = 0.0;
 
   void add(double difference, double variance) {
     magnitude.push_back(std::abs(difference));
     if (std::abs(difference) <= 1.96 * std::sqrt(variance)) ++covered;
+    normalised += difference * difference / variance;
   }
   DifferenceStatistics statistics() {
     DifferenceStatistics out;
@@ -31,6 +33,7 @@ struct Collector {
     out.p95 = magnitude[static_cast<std::size_t>(0.95 * (n - 1.0))];
     out.max = magnitude.back();
     out.coverage = static_cast<double>(covered) / n;
+    out.in_sigmas = std::sqrt(normalised / n);
     return out;
   }
 };

@@ -145,6 +145,8 @@ void describe_wheels(ConfigVisitor& v, SurveyConfig& c) {
             {.doc = "Of the zero angular rate, beyond the gyros' noise.", .unit = "rad/s", .positive = true});
     t.value("sigma_mps", e.zero_velocity_sigma, speed("Of the zero velocity."));
     t.value("interval_s", e.zero_interval, seconds("Between two updates while standing."));
+    t.value("position_sigma_m", e.zero_position_sigma,
+            metres("How far rocking moves the vehicle about its mean place; while it stands its position is that."));
   });
 }
 

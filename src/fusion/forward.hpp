@@ -72,11 +72,13 @@ class Forward {
   void propagate(ImuWalk& walk, Time end, std::span<const Event> events, Steps<N>& out) {
     InsEstimate& e = moment_.estimate;
     const Time begin = e.nav.time;
+    const bool held = stands_between(begin, end), changed = std::exchange(held_, held) != held;
+    if (changed) odometer_in_hold_ = false;
     const DistanceRate rate_before = distance_rate(moment_, l_);
     accumulator_.reset();
     Eigen::Vector3d turned = Eigen::Vector3d::Zero();
     double way = 0.0;
-    walk.advance(e.nav, moment_.C_nb, e.imu, end,
+    walk.advance(e.nav, moment_.C_nb, e.imu, end, held,
                  [&](const inertial::StepGeometry& g, const inertial::Increment& piece, const inertial::NavState&) {
                    accumulator_.add(g, piece);
                    turned += piece.rotation;
@@ -86,6 +88,7 @@ class Forward {
                        g.C_nb_middle.transpose() * g.v_middle + moment_.omega_nb_b.cross(e.wheel_lever);
                    way += e.C_vb.row(0).dot(wheel_b) * piece.dt;
                  });
+    if (held) way = 0.0;
     e.distance += (1.0 + e.odometer_scale) * way;
     dt_ = (end - begin).seconds();
     mean_rate_ib_ = turned / dt_;
@@ -93,7 +96,8 @@ class Forward {
     // The estimate fades as its error does (NoiseModel), or the filter believes in a bias that is long gone.
     if (l_.gnss_bias.enabled()) e.gnss_bias *= std::exp(-dt_ / o_.gnss_bias_time);
 
-    step_.noise = {dt_, way_, std::exchange(inflation_, 0.0), !distance_known_ || restart_distance_};
+    const double rocking = changed ? o_.zero_position_sigma * o_.zero_position_sigma : 0.0;
+    step_.noise = {dt_, way_, std::exchange(inflation_, 0.0), rocking, !distance_known_ || restart_distance_};
     const auto reading =
         std::find_if(events.begin(), events.end(), [&](const Event& x) { return x.kind == Event::Kind::odometer; });
     if (reading != events.end() && step_.noise.new_distance) {
@@ -119,8 +123,13 @@ class Forward {
       transition_.top.row(i).template segment<12>(l_.gyro_bias.offset) =
           row.template segment<12>(9).matrix().transpose();
     }
+    if (held_) transition_.top.template topRows<3>().setIdentity();
     noise_.template fill<N>(step_.noise, transition_);
     if (step_.noise.new_distance) return;
+    if (held_) {
+      transition_.top(l_.distance.offset, l_.distance.offset) = 1.0;
+      return;
+    }
     const DistanceRate after = distance_rate(moment_, l_);
     const int d = l_.distance.offset, m = n - filter::moving;
     auto row = transition_.top.row(d);
@@ -161,8 +170,9 @@ class Forward {
         update("heading", t, vehicle_heading(moment_, l_, in_.heading[i].heading, in_.heading[i].sigma), true, out);
         break;
       case Event::Kind::odometer:
-        // The first reading after a start is where the distance is counted from.
-        if (!std::exchange(anchored_, false)) {
+        // The first reading after a start is where the distance is counted from. While the wheel stands its readings
+        // repeat one error: one of them is all that they tell.
+        if (!std::exchange(anchored_, false) && !(held_ && std::exchange(odometer_in_hold_, true))) {
           update("odometer", t, odometer_distance(moment_, l_, in_.odometer[i], o_.odometer_sigma), true, out);
         }
         break;
@@ -176,11 +186,17 @@ class Forward {
     }
   }
 
+  /// Times never go back from one call to the next.
+  [[nodiscard]] bool stands_between(Time from, Time to) {
+    while (standstill_ < standstills_.size() && standstills_[standstill_].to < from) ++standstill_;
+    return o_.zero_velocity && standstill_ < standstills_.size() && standstills_[standstill_].contains(from) &&
+           standstills_[standstill_].contains(to);
+  }
+
   void apply_constraints(Steps<N>& out) {
     const Time t = moment_.estimate.nav.time;
-    while (standstill_ < standstills_.size() && standstills_[standstill_].to < t) ++standstill_;
-    standing_ = standstill_ < standstills_.size() && standstills_[standstill_].contains(t);
-    if (standing_ && o_.zero_velocity) {
+    standing_ = stands_between(t, t);
+    if (standing_) {
       if ((t - last_zero_).seconds() < o_.zero_interval - 0.5 * dt_) return;
       last_zero_ = t;
       update("zero velocity", t, zero_velocity(moment_, l_, o_.zero_velocity_sigma), true, out);
@@ -253,7 +269,7 @@ class Forward {
   void emit(std::size_t next_sample, Steps<N>& out) {
     pack<N>(P_, step_);
     out.steps.push_back(step_);
-    out.waypoints.push_back({moment_.estimate, next_sample});
+    out.waypoints.push_back({moment_.estimate, next_sample, held_});
   }
 
   /// The first standstill ends: what the fine alignment has reached.
@@ -280,7 +296,8 @@ class Forward {
   Step<N> step_;
   Eigen::Vector3d mean_rate_ib_ = Eigen::Vector3d::Zero();
   double dt_ = 0.0, way_ = 0.0, inflation_ = 0.0;
-  bool distance_known_ = false, anchored_ = false, restart_distance_ = false, standing_ = false, report_done_ = false;
+  bool distance_known_ = false, anchored_ = false, restart_distance_ = false, standing_ = false, report_done_ = false,
+       held_ = false, odometer_in_hold_ = false;
   std::size_t standstill_ = 0;
   Time last_speed_{INT64_MIN / 2}, last_zero_{INT64_MIN / 2}, last_constraint_{INT64_MIN / 2};
 };

@@ -16,17 +16,20 @@ class ImuWalk {
 
   [[nodiscard]] std::size_t next() const { return next_; }
 
-  /// Moves `nav` (with C_nb beside it) to `until`; `each(geometry, increment, nav)` sees every piece.
+  /// Moves `nav` (with C_nb beside it) to `until`; `each(geometry, increment, nav)` sees every piece. `hold`: the
+  /// vehicle stands, its position stays.
   template <class Each>
   void advance(inertial::NavState& nav, Eigen::Matrix3d& C_nb, const inertial::ImuCorrection& correction, Time until,
-               Each&& each) {
+               bool hold, Each&& each) {
     while (nav.time < until) {
       const Time sample_end = imu_[next_].time;
       const inertial::Increment whole = increment(next_, correction);
       const Time end = std::min(sample_end, until);
       const inertial::Increment piece = inertial::part(whole, (end - nav.time).seconds() / whole.dt);
       inertial::StepGeometry geometry;
+      const geodesy::Geodetic place = nav.position;
       nav = inertial::mechanize(nav, piece, geodesy::wgs84, C_nb, geometry);
+      if (hold) nav.position = place;
       nav.time = end;
       each(geometry, piece, nav);
       if (end == sample_end) ++next_;

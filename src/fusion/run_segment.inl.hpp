@@ -55,7 +55,7 @@ inline void write_trajectory(const RunContext& c, const Segment& segment, const 
     inertial::NavState nav = waypoints[k].estimate.nav;
     Eigen::Matrix3d C_nb = nav.q_nb.toRotationMatrix();
     ImuWalk walk(c.input.imu, segment.begin, std::max(segment.begin, waypoints[k].next_sample));
-    walk.advance(nav, C_nb, waypoints[k].estimate.imu, end,
+    walk.advance(nav, C_nb, waypoints[k].estimate.imu, end, waypoints[k + 1].held,
                  [&](const inertial::StepGeometry&, const inertial::Increment&, const inertial::NavState& now) {
                    if (now.time == end) return;
                    if (const std::int64_t t = tick_of(now.time); t != last) {

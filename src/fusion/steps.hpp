@@ -14,6 +14,7 @@ struct StepNoise {
   double dt = 0.0;           ///< s
   double way = 0.0;          ///< m travelled
   double inflation = 0.0;    ///< m^2 added to the position after the filter lost trust in itself
+  double rocking = 0.0;      ///< m^2 added to the position where a standstill begins or ends
   bool new_distance = true;  ///< the odometer's distance starts anew (or is not in use): nothing of its past is kept
 };
 
@@ -33,7 +34,7 @@ class NoiseModel {
     const auto set = [&](auto block, double variance) {
       t.noise.template segment<decltype(block)::size>(block.offset).setConstant(variance);
     };
-    set(l_.position, s.inflation);
+    set(l_.position, s.inflation + s.rocking);
     set(l_.velocity, a.random_walk * a.random_walk * s.dt + 0.01 * s.inflation);
     set(l_.attitude, g.random_walk * g.random_walk * s.dt);
     set(l_.distance, s.new_distance ? 2.0 * o_.odometer_sigma * o_.odometer_sigma
@@ -81,6 +82,7 @@ struct Row {
 struct Waypoint {
   InsEstimate estimate;
   std::size_t next_sample = 0;
+  bool held = false;  ///< the step that ends here is part of a standstill: the position stays as it was
 };
 
 template <int N>

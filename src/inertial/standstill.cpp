@@ -50,14 +50,17 @@ double quietest(const std::vector<Window>& all, Get get) {
   return *tenth;
 }
 
+bool odometer_agrees(const StandstillInput& in, Time from, Time to, double limit) {
+  if (in.odometer == nullptr || in.odometer->empty()) return true;
+  const auto before = [&](Time t) {
+    const std::size_t i = in.odometer->lower_bound({t.ns + 1});
+    return (*in.odometer)[i == 0 ? 0 : i - 1].distance;
+  };
+  return std::abs(before(to) - before(from)) <= limit;
+}
+
 bool aids_agree(const StandstillInput& in, const StandstillOptions& o, const Window& w) {
-  if (in.odometer != nullptr && !in.odometer->empty()) {
-    const auto before = [&](Time t) {
-      const std::size_t i = in.odometer->lower_bound({t.ns + 1});
-      return (*in.odometer)[i == 0 ? 0 : i - 1].distance;
-    };
-    if (!(std::abs(before(w.to) - before(w.from)) <= o.odometer_step)) return false;
-  }
+  if (!odometer_agrees(in, w.from, w.to, o.odometer_step)) return false;
   if (in.speed != nullptr) {
     for (const auto& s : in.speed->between(w.from, w.to)) {
       if (!(std::abs(s.speed) <= o.gnss_speed)) return false;
@@ -105,7 +108,8 @@ std::vector<Interval> find_standstills(const StandstillInput& input, const Stand
   for (const Window& w : all) {
     if (!quiet(w) || !((w.rate_mean - bias).cwiseAbs().maxCoeff() <= o.rate_mean) || !aids_agree(input, o, w)) {
       close();
-    } else if (open && (w.from - open->to).seconds() < 0.5 * o.window) {
+    } else if (open && (w.from - open->to).seconds() < 0.5 * o.window &&
+               odometer_agrees(input, open->from, w.to, 2.0 * o.odometer_step)) {
       open->to = w.to;
     } else {
       close();

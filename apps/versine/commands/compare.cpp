@@ -49,11 +49,8 @@ int compare(const Options& o) {
   if (!o.json)
     std::printf("%zu points\n%-8s %12s %12s %12s %12s\n", c->points, "", "RMS", "95 %", "largest", "in 1.96 s");
   for (const auto& [name, unit, scale, s] : rows) {
-    out[name] = {{"unit", unit},
-                 {"rms", s.rms / scale},
-                 {"p95", s.p95 / scale},
-                 {"max", s.max / scale},
-                 {"coverage95", s.coverage}};
+    out[name] = {{"unit", unit},         {"rms", s.rms / scale},     {"p95", s.p95 / scale},
+                 {"max", s.max / scale}, {"coverage95", s.coverage}, {"rms_in_sigmas", s.in_sigmas}};
     if (!o.json) {
       std::printf("%-8s %12.3f %12.3f %12.3f %10.1f %%  (%s)\n", name, s.rms / scale, s.p95 / scale, s.max / scale,
                   100.0 * s.coverage, unit);

@@ -8,9 +8,9 @@
 namespace versine::app {
 
 /// Root mean square, 95 % and largest magnitude of one component's differences, and the share of them inside 1.96
-/// sigma (of both trajectories together).
+/// sigma (of both trajectories together). `in_sigmas` is the RMS of difference over sigma: 1 where sigmas are honest.
 struct DifferenceStatistics {
-  double rms = 0.0, p95 = 0.0, max = 0.0, coverage = 0.0;
+  double rms = 0.0, p95 = 0.0, max = 0.0, coverage = 0.0, in_sigmas = 0.0;
 };
 
 /// Differences of a trajectory from a reference, in the reference's track axes: along its velocity, across (positive

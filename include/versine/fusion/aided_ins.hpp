@@ -102,6 +102,9 @@ struct AidedInsOptions {
   double zero_velocity_sigma = 0.002;  ///< m/s
   double zero_rate_sigma = 2e-4;       ///< rad/s; noise of the mean rate in one covariance step beyond the gyros' own
   double zero_interval = 0.5;          ///< s between updates while standing
+  /// m; how far the vehicle's place may be from its mean place of a standstill (rocking). While it stands its position
+  /// is that constant, not the integral of a velocity.
+  double zero_position_sigma = 1e-4;
   inertial::StandstillOptions standstill;
 
   // --- gates and weights

@@ -22,7 +22,7 @@ struct StandstillOptions {
   double acceleration_spread = 0.05;  ///< m/s^2; standard deviation of the specific force in a window, each axis
   double rate_spread = 0.003;         ///< rad/s; standard deviation of the angular rate in a window, each axis
   double rate_mean = 0.003;           ///< rad/s; mean angular rate beyond the gyro's bias
-  double odometer_step = 0.002;       ///< m; the odometer may change by this much in a window
+  double odometer_step = 0.002;       ///< m; the odometer may change by this much in a window; by twice in a standstill
   double gnss_speed = 0.3;            ///< m/s; where GNSS tells a higher speed, the vehicle does not stand
 };
 
