@@ -56,10 +56,16 @@ def horizontal_drift(folder):
 def ring_laser(folder):
     print("\n### Ring-laser IMU, standing for half an hour\n\n| quantity | value |\n| --- | --- |")
     job = JOBS / "ring-laser-static.toml"
-    start = run(job, folder)["segments"][0]
+    summary = run(job, folder)
+    start = summary["segments"][0]
     for name in ("roll", "pitch", "heading"):
         print(f"| {name} | {start[name + '_deg']:.4f} deg |")
     print(f"| sigma of level, of heading | {start['sigma_level_deg']:.5f} deg, {start['sigma_heading_deg']:.4f} deg |")
+    rate = summary["earth_rate"]
+    print(f"| Earth rate recovered, total (15.041) | {rate['total_degph']:.3f} deg/h |")
+    print(f"| Earth rate recovered, horizontal (12.434), vertical (8.464) | {rate['horizontal_degph']:.3f} deg/h, "
+          f"{rate['vertical_degph']:.3f} deg/h |")
+    print(f"| sigma of each | {rate['sigma_degph']:.3f} deg/h |")
     print(f"| largest horizontal drift with zero-velocity updates | {1000 * horizontal_drift(folder):.3f} mm |")
     run(job, folder, "standstill.on=false", "alignment.heading=given", "alignment.heading_deg=90.6")
     print(f"| largest horizontal drift, pure inertial | {horizontal_drift(folder):.1f} m |")

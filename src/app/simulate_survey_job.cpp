@@ -62,6 +62,7 @@ std::string survey_job_for(const SimulateConfig& c, const simulation::SimulatedR
   if (!r.gnss.empty()) {
     text += fmt::format("\n[gnss]\nfile = \"gnss.csv\"\nlever_arm_m = {}\n", list(C_bv * c.gnss.antenna));
     // A receiver tells one sigma; that part of its errors stays alike for minutes is for the job to say.
+    if (c.gnss.sigma_factor != 1.0) text += fmt::format("sigma_factor = {:.6g}\n", c.gnss.sigma_factor);
     if (c.gnss.correlated_horizontal > 0.0) {
       text += fmt::format("bias_sigma_m = {:.6g}\nbias_sigma_up_m = {:.6g}\nbias_time_s = {:.6g}\n",
                           c.gnss.correlated_horizontal, c.gnss.correlated_vertical, c.gnss.correlation_time);
@@ -86,7 +87,7 @@ std::string survey_job_for(const SimulateConfig& c, const simulation::SimulatedR
     const double rough = smooth ? 1.0 : 10.0;
     text += fmt::format(
         "\n[constraint]\nsigma_mps = {:.6g}\nangle_rad = {:.6g}\npeak_rad = {:.6g}\n\n[standstill]\nsigma_mps = "
-        "0.00003\n",
+        "0.00003\nposition_sigma_m = 1e-5\n",
         2e-5 * rough, 1e-5 * rough, 2e-4 * rough);
   }
   text += total_station_tables(c, r, C_bv);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "versine/app/progress_file.hpp"
@@ -10,6 +11,7 @@
 #include "versine/app/survey_landmark.hpp"
 #include "versine/app/survey_output.hpp"
 #include "versine/app/withhold.hpp"
+#include "versine/core/units.hpp"
 
 namespace versine::app {
 
@@ -67,6 +69,12 @@ Expected<SurveyResult> compute_survey(const SurveyConfig& config, const std::fil
   if (!solved) return tl::unexpected(solved.error());
   if (!hidden.empty()) {
     result.withheld = compare_withheld(hidden, solved->solution.smoothed, config.estimator.gnss_lever.l_b);
+  }
+  const auto longest = std::max_element(solved->standstills.begin(), solved->standstills.end(),
+                                        [](const auto& a, const auto& b) { return a.seconds() < b.seconds(); });
+  if (longest != solved->standstills.end()) {
+    const auto rate = inertial::measured_earth_rate(estimator.imu, *longest, config.estimator.imu_errors);
+    if (rate && rate->sigma < 3.0 * units::deg_per_hour) result.earth_rate = rate;
   }
   watch.stage("align, filter and smooth");
   if (config.total_station.check_control && input->total_station) {

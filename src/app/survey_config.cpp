@@ -2,6 +2,7 @@
 #include "versine/app/survey_config.hpp"
 
 #include <array>
+#include <cmath>
 
 #include "versine/app/survey_landmark.hpp"
 #include "versine/core/units.hpp"
@@ -196,6 +197,12 @@ void describe_filter(ConfigVisitor& v, fusion::AidedInsOptions& e) {
   v.value(
       "doubt_after_s", e.doubt_after,
       seconds("With positions, only when the rejections have lasted this long: wrong ambiguities last for seconds."));
+  v.value("gravity_walk_mgalpsqrtkm", e.gravity_walk,
+          {.doc = "Change of gravity against its normal value, in size and direction, per root of the distance.",
+           .unit = "mGal/sqrt(km)",
+           .scale = units::mGal / std::sqrt(1000.0),
+           .min = 0,
+           .max = 1000});
   v.value("monitor_length", e.monitor_length,
           {.doc = "Innovations whose mean is watched for slow faults; 0: off.", .min = 0});
 }

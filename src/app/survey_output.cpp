@@ -74,6 +74,13 @@ json summary_of(const SurveyConfig& config, const SurveyResult& result, const st
     }
   }
   if (result.control) out["network"] = json::parse(network_summary_json(result.control->network));
+  if (result.earth_rate) {
+    const inertial::EarthRate& e = *result.earth_rate;
+    out["earth_rate"] = {{"total_degph", e.omega_ib_b.norm() / units::deg_per_hour},
+                         {"horizontal_degph", e.horizontal / units::deg_per_hour},
+                         {"vertical_degph", e.vertical / units::deg_per_hour},
+                         {"sigma_degph", e.sigma / units::deg_per_hour}};
+  }
   if (result.geometry) out["geometry"] = json::parse(geometry_summary_json(*result.geometry));
   if (result.withheld) {
     const WithheldErrors& w = *result.withheld;
@@ -97,6 +104,11 @@ std::string text_of(const SurveyResult& result, const json& s) {
     text += fmt::format("  {}: {} used, {} rejected, mean NIS {:.2f} ({:.2f} to {:.2f})\n",
                         i["sensor"].get<std::string>(), i["used"].get<int>(), i["rejected"].get<int>(),
                         i["mean_nis_per_row"].get<double>(), i["lower"].get<double>(), i["upper"].get<double>());
+  }
+  if (result.earth_rate) {
+    text += fmt::format("  Earth rate seen while standing: {:.3f} deg/h, sigma {:.3f}\n",
+                        result.earth_rate->omega_ib_b.norm() / units::deg_per_hour,
+                        result.earth_rate->sigma / units::deg_per_hour);
   }
   for (const Finding& f : result.input.record.findings) {
     text += f.count > 0 ? fmt::format("  {}: {} x {}, {}\n", f.sensor, f.count, f.kind, to_string(f.action))

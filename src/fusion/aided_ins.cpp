@@ -96,9 +96,10 @@ Expected<AidedInsResult> run_aided_ins(const AidedInsInput& input, const AidedIn
     log.info(fmt::format("segment {} from {:.3f} s to {:.3f} s: heading from {}, sigma {:.3f} deg", number + 1,
                          segment.from.seconds(), segment.to.seconds(), start->alignment.method,
                          start->alignment.sigma.z() / units::deg));
-    Expected<Previous> left = layout.size() == 23 ? detail::run_segment<23>(context, segment, *start, number)
-                              : layout.size() == 25
-                                  ? detail::run_segment<25>(context, segment, *start, number)
+    Expected<Previous> left = layout.size() == 23   ? detail::run_segment<23>(context, segment, *start, number)
+                              : layout.size() == 25 ? detail::run_segment<25>(context, segment, *start, number)
+                              : layout.size() == 26
+                                  ? detail::run_segment<26>(context, segment, *start, number)
                                   : detail::run_segment<Eigen::Dynamic>(context, segment, *start, number);
     if (!left) return fail(left.error());
     previous = std::move(*left);

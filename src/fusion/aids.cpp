@@ -40,9 +40,11 @@ Judge::Verdict Judge::judge(const char* name, Time time, filter::Linearized& l,
   // An instrument's attitude that never fits says that its mounting is wrong, not the filter.
   const bool mounting = std::string_view(name) == "landmark attitude";
   if (sensor.in_a_row == 0) sensor.first_in_a_row = time;
+  // A segment that has only begun has no better knowledge than the sensor that contradicts it.
+  const double patience = std::min(options_.doubt_after, (sensor.first_in_a_row - segment_).seconds());
   if (!good && !mounting && std::isfinite(nis) && options_.most_rejections > 0 &&
       sensor.in_a_row + 1 >= static_cast<std::size_t>(options_.most_rejections) &&
-      (often || (time - sensor.first_in_a_row).seconds() >= options_.doubt_after)) {
+      (often || (time - sensor.first_in_a_row).seconds() >= patience)) {
     verdict = Verdict::doubt_filter;
     result_.solution.record.warnings.push_back(
         fmt::format("{} rejected {} times in a row until {:.3f} s: the filter's covariance was enlarged instead", name,

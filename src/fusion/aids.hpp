@@ -32,6 +32,8 @@ class Judge {
   /// S is the innovation's covariance. A robust weight may enlarge `l.R`.
   Verdict judge(const char* sensor, Time time, filter::Linearized& l, const Eigen::Ref<const Eigen::MatrixXd>& S,
                 bool often);
+  /// A segment begins: nothing is known from before.
+  void begin_segment(Time from) { segment_ = from; }
   /// Sums up into the result.
   void finish();
 
@@ -46,6 +48,7 @@ class Judge {
   const AidedInsOptions& options_;
   AidedInsResult& result_;
   filter::Gate gate_;
+  Time segment_;
   std::map<std::string, Sensor, std::less<>> sensors_;
 };
 

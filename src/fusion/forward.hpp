@@ -21,7 +21,7 @@ class Forward {
 
   /// `tick(fraction)` is called now and then; false stops the pass.
   template <class Tick>
-  bool run(const Segment& segment, const Start& start, Steps<N>& out, SegmentStart& report, Tick&& tick) {
+  bool run(const Segment& segment, const Start& start, Steps& out, SegmentStart& report, Tick&& tick) {
     begin(segment, start, out);
     const std::vector<Event> events = events_between(in_, o_, segment.from, segment.to);
     const Duration interval = Duration::from_seconds(1.0 / o_.covariance_rate), slack{interval.ns / 4};
@@ -53,7 +53,8 @@ class Forward {
  private:
   using Vector = filter::StateVector<N>;
 
-  void begin(const Segment&, const Start& start, Steps<N>& out) {
+  void begin(const Segment&, const Start& start, Steps& out) {
+    judge_.begin_segment(start.estimate.nav.time);
     moment_.estimate = start.estimate;
     refresh();
     P_ = start.covariance;
@@ -69,12 +70,12 @@ class Forward {
 
   void refresh() { moment_.C_nb = moment_.estimate.nav.q_nb.toRotationMatrix(); }
 
-  void propagate(ImuWalk& walk, Time end, std::span<const Event> events, Steps<N>& out) {
+  void propagate(ImuWalk& walk, Time end, std::span<const Event> events, Steps& out) {
     InsEstimate& e = moment_.estimate;
     const Time begin = e.nav.time;
     const bool held = stands_between(begin, end), changed = std::exchange(held_, held) != held;
     if (changed) odometer_in_hold_ = false;
-    const DistanceRate rate_before = distance_rate(moment_, l_);
+    const DistanceRate rate_before = distance_rate(on_wheels(moment_), l_);
     accumulator_.reset();
     Eigen::Vector3d turned = Eigen::Vector3d::Zero();
     double way = 0.0;
@@ -97,7 +98,8 @@ class Forward {
     if (l_.gnss_bias.enabled()) e.gnss_bias *= std::exp(-dt_ / o_.gnss_bias_time);
 
     const double rocking = changed ? o_.zero_position_sigma * o_.zero_position_sigma : 0.0;
-    step_.noise = {dt_, way_, std::exchange(inflation_, 0.0), rocking, !distance_known_ || restart_distance_};
+    step_.noise = {dt_, way_, static_cast<float>(std::exchange(lost_position_, 0.0) + rocking),
+                   static_cast<float>(std::exchange(lost_velocity_, 0.0)), !distance_known_ || restart_distance_};
     const auto reading =
         std::find_if(events.begin(), events.end(), [&](const Event& x) { return x.kind == Event::Kind::odometer; });
     if (reading != events.end() && step_.noise.new_distance) {
@@ -107,7 +109,7 @@ class Forward {
     }
     fill_transition(rate_before);
     filter::predict<N>(P_, transition_);
-    pack_transition<N>(transition_, step_);
+    pack_transition<N>(transition_, out.arena, step_);
     step_.first_row = out.rows.size();
     step_.rows = 0;
   }
@@ -130,7 +132,7 @@ class Forward {
       transition_.top(l_.distance.offset, l_.distance.offset) = 1.0;
       return;
     }
-    const DistanceRate after = distance_rate(moment_, l_);
+    const DistanceRate after = distance_rate(on_wheels(moment_), l_);
     const int d = l_.distance.offset, m = n - filter::moving;
     auto row = transition_.top.row(d);
     row.noalias() = after.H.template head<9>() * transition_.top.template topRows<9>();
@@ -139,7 +141,7 @@ class Forward {
     row[d] += 1.0;
   }
 
-  void apply(const Event& event, Steps<N>& out) {
+  void apply(const Event& event, Steps& out) {
     const std::size_t i = event.index;
     const Time t = event.time;
     switch (event.kind) {
@@ -150,7 +152,8 @@ class Forward {
           update("gnss position", t, gnss_position(moment_, l_, s, sigma), false, out);
         }
         if (o_.use_gnss_velocity && s.v_ned) {
-          update("gnss velocity", t, gnss_velocity(moment_, l_, s, 1e-3), false, out);
+          const Eigen::Vector3d sigma = (o_.gnss_sigma_scale * s.sigma_v_ned).cwiseMax(1e-3);
+          update("gnss velocity", t, gnss_velocity(moment_, l_, s, sigma), false, out);
         }
         break;
       }
@@ -180,7 +183,9 @@ class Forward {
         // Errors that stay alike count as white noise of the same power at low frequency.
         const double spacing = std::max(1e-3, (t - std::exchange(last_speed_, t)).seconds());
         const double sigma = o_.speed_sigma * std::sqrt(std::max(1.0, 2.0 * o_.speed_correlation_time / spacing));
-        update("speed", t, forward_speed(moment_, l_, in_.speed[i], sigma), true, out);
+        filter::Linearized l = forward_speed(moment_, l_, in_.speed[i], sigma);
+        l.H.row(0) = distance_rate(on_wheels(moment_), l_).H;
+        update("speed", t, l, true, out);
         break;
       }
     }
@@ -193,7 +198,7 @@ class Forward {
            standstills_[standstill_].contains(to);
   }
 
-  void apply_constraints(Steps<N>& out) {
+  void apply_constraints(Steps& out) {
     const Time t = moment_.estimate.nav.time;
     standing_ = stands_between(t, t);
     if (standing_) {
@@ -215,14 +220,14 @@ class Forward {
     const double speed = moment_.estimate.nav.v_eb_n.norm();
     const double alike = std::max(1.0, 2.0 * o_.constraint_correlation / std::max(1e-3, speed * since));
     const double angle = o_.constraint_angle * speed;
-    update("constraint", t,
-           constraint(moment_, l_, std::sqrt(std::pow(o_.constraint_sigma, 2) + angle * angle * alike)), true, out,
-           o_.constraint_peak * speed);
+    filter::Linearized l = constraint(moment_, l_, std::sqrt(std::pow(o_.constraint_sigma, 2) + angle * angle * alike));
+    l.H = wheel_velocity(on_wheels(moment_), l_).H.bottomRows<2>();
+    update("constraint", t, l, true, out, o_.constraint_peak * speed);
   }
 
   /// `peak`: single errors may be so much larger than R tells before they count as faults. Returns whether the
   /// measurement was used.
-  bool update(const char* sensor, Time t, filter::Linearized l, bool often, Steps<N>& out, double peak = 0.0) {
+  bool update(const char* sensor, Time t, filter::Linearized l, bool often, Steps& out, double peak = 0.0) {
     const int m = l.rows();
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, filter::max_rows, filter::max_states> a(
         m, l_.size());
@@ -231,12 +236,7 @@ class Forward {
     S += a.lazyProduct(l.H.transpose());
     S.diagonal().array() += peak * peak;
     const Judge::Verdict verdict = judge_.judge(sensor, t, l, S, often);
-    if (verdict == Judge::Verdict::doubt_filter) {
-      if (std::string_view(sensor) == "odometer")
-        restart_distance_ = true;
-      else
-        inflation_ = std::max(inflation_, std::min(1e8, l.z.squaredNorm()));
-    }
+    if (verdict == Judge::Verdict::doubt_filter) lose_trust(sensor, std::min(1e8, l.z.squaredNorm()));
     if (verdict != Judge::Verdict::use) return false;
 
     // Uncorrelated rows of unit variance.
@@ -250,12 +250,12 @@ class Forward {
     for (int i = 0; i < m; ++i) {
       const Vector h = l.H.row(i).transpose();
       const filter::UpdateRow<N> row = filter::update_row<N>(x, P_, h, l.z[i], 1.0);
-      Row<N> packed;
-      packed.innovation = static_cast<float>(row.innovation);
-      packed.variance = static_cast<float>(row.variance);
-      for (Eigen::Index k = 0; k < row.h.size(); ++k) {
-        packed.h[static_cast<std::size_t>(k)] = static_cast<float>(row.h[k]);
-        packed.gain[static_cast<std::size_t>(k)] = static_cast<float>(row.gain[k]);
+      const auto n = static_cast<std::size_t>(l_.size());
+      Row packed{static_cast<float>(row.innovation), static_cast<float>(row.variance), out.arena.take(n),
+                 out.arena.take(n)};
+      for (std::size_t k = 0; k < n; ++k) {
+        packed.h[k] = static_cast<float>(row.h[static_cast<Eigen::Index>(k)]);
+        packed.gain[k] = static_cast<float>(row.gain[static_cast<Eigen::Index>(k)]);
       }
       out.rows.push_back(packed);
       ++step_.rows;
@@ -266,8 +266,20 @@ class Forward {
     return true;
   }
 
-  void emit(std::size_t next_sample, Steps<N>& out) {
-    pack<N>(P_, step_);
+  /// A sensor was rejected too often: what it measures becomes uncertain by as much as it contradicts.
+  void lose_trust(std::string_view sensor, double square) {
+    if (sensor == "odometer") {
+      restart_distance_ = true;
+    } else if (sensor == "gnss position" || sensor == "landmark") {
+      lost_position_ = std::max(lost_position_, square);
+      lost_velocity_ = std::max(lost_velocity_, 0.01 * square);
+    } else {
+      lost_velocity_ = std::max(lost_velocity_, square);
+    }
+  }
+
+  void emit(std::size_t next_sample, Steps& out) {
+    pack<N>(P_, out.arena, step_);
     out.steps.push_back(step_);
     out.waypoints.push_back({moment_.estimate, next_sample, held_});
   }
@@ -293,9 +305,9 @@ class Forward {
   filter::StateMatrix<N> P_;
   filter::Transition<N> transition_;
   inertial::TransitionAccumulator accumulator_;
-  Step<N> step_;
+  Step step_;
   Eigen::Vector3d mean_rate_ib_ = Eigen::Vector3d::Zero();
-  double dt_ = 0.0, way_ = 0.0, inflation_ = 0.0;
+  double dt_ = 0.0, way_ = 0.0, lost_position_ = 0.0, lost_velocity_ = 0.0;
   bool distance_known_ = false, anchored_ = false, restart_distance_ = false, standing_ = false, report_done_ = false,
        held_ = false, odometer_in_hold_ = false;
   std::size_t standstill_ = 0;

@@ -24,7 +24,7 @@ inline geodesy::Covariance3 between(const geodesy::Covariance3& a, const geodesy
 
 /// Writes a trajectory at the wanted IMU samples: walks from each waypoint as the filter did and takes off the error,
 /// which between two steps runs straight from the one to the other.
-inline void write_trajectory(const RunContext& c, const Segment& segment, const std::vector<Waypoint>& waypoints,
+inline void write_trajectory(const RunContext& c, const Segment& segment, const std::deque<Waypoint>& waypoints,
                              const std::vector<Node>& nodes, std::int32_t number, geodesy::Trajectory& out) {
   const double rate = c.options.output_rate;
   const auto tick_of = [&](Time t) {
@@ -103,7 +103,7 @@ inline std::vector<int> chain_order(int n) {
 }
 
 template <int N>
-bool smooth(const RunContext& c, const Steps<N>& steps, SmootherKind kind, std::vector<Node>& nodes) {
+bool smooth(const RunContext& c, const Steps& steps, SmootherKind kind, std::vector<Node>& nodes) {
   const int n = c.layout.size();
   const NoiseModel noise(c.options, c.layout);
   std::vector<SensorErrorSample> errors;
@@ -150,9 +150,9 @@ bool smooth(const RunContext& c, const Steps<N>& steps, SmootherKind kind, std::
     };
   }
   Backward<N> backward(steps, noise, n);
-  const bool good = kind == SmootherKind::bryson_frazier ? backward.bryson_frazier(wanted, take, chain)
+  const auto done = kind == SmootherKind::bryson_frazier ? backward.bryson_frazier(wanted, take, chain)
                                                          : backward.rauch_tung_striebel(wanted, take, chain);
-  if (!good) return false;
+  if (!done) return false;
   Solution& solution = c.result.solution;
   solution.sensor_errors.insert(solution.sensor_errors.end(), errors.rbegin(), errors.rend());
   for (auto it = links.rbegin(); it != links.rend(); ++it) {
@@ -164,7 +164,7 @@ bool smooth(const RunContext& c, const Steps<N>& steps, SmootherKind kind, std::
 template <int N>
 Expected<Previous> run_segment(const RunContext& c, const Segment& segment, const Start& start, std::int32_t number) {
   const int n = c.layout.size();
-  Steps<N> steps;
+  Steps steps;
   SegmentStart report{segment.from, segment.to, start.alignment, {}, {}};
   Forward<N> forward(c.input, c.options, c.layout, c.standstills, c.judge);
   const bool done = forward.run(segment, start, steps, report, [&](double fraction) {
@@ -193,14 +193,8 @@ Expected<Previous> run_segment(const RunContext& c, const Segment& segment, cons
   if (c.options.smoother == SmootherKind::none) return left;
 
   c.progress.report("smoother", 0.0);
-  SmootherKind kind = c.options.smoother;
-  bool good = smooth<N>(c, steps, kind, nodes);
-  if (!good && kind == SmootherKind::bryson_frazier) {
-    c.result.solution.record.warnings.push_back(
-        "Bryson-Frazier smoother met a non-positive variance: Rauch-Tung-Striebel used instead");
-    good = smooth<N>(c, steps, kind = SmootherKind::rauch_tung_striebel, nodes);
-  }
-  if (!good) {
+  const SmootherKind kind = c.options.smoother;
+  if (!smooth<N>(c, steps, kind, nodes)) {
     return fail({.field = "smoother",
                  .found = "a covariance that is not positive definite",
                  .expected = "positive variances",
@@ -209,6 +203,7 @@ Expected<Previous> run_segment(const RunContext& c, const Segment& segment, cons
   c.result.smoother_used = std::max(c.result.smoother_used, kind);
   steps.steps.clear();
   steps.rows.clear();
+  steps.arena.clear();
   write_trajectory(c, segment, steps.waypoints, nodes, number, c.result.solution.smoothed);
   return left;
 }

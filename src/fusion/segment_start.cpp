@@ -38,14 +38,14 @@ struct Place {
   double sigma = 0.0, age = 0.0;
 };
 
-/// The aid nearest to the start in time, less its lever arm. Its own sigma counts five times: it will be used again as
-/// a measurement.
+/// The aid nearest to the start in time, less its lever arm. Its own sigma counts thirty times: it will be used again
+/// as a measurement, and what it says must not count twice.
 std::optional<Place> place_at(Time t, const AidedInsInput& in, const AidedInsOptions& o, const Eigen::Matrix3d& C_nb) {
   std::optional<Place> best;
   const auto offer = [&](Time at, const geodesy::Geodetic& g, double sigma, const Vector3d& lever) {
     const double age = std::abs((at - t).seconds());
     if (best && best->age <= age) return;
-    best = Place{geodesy::wgs84.displaced(g, -(C_nb * lever)), 5.0 * sigma, age};
+    best = Place{geodesy::wgs84.displaced(g, -(C_nb * lever)), 30.0 * sigma, age};
   };
   const auto nearest = [&](const auto& series, auto&& use) {
     const std::size_t i = series.lower_bound(t);
@@ -66,9 +66,24 @@ std::optional<Place> place_at(Time t, const AidedInsInput& in, const AidedInsOpt
   return best;
 }
 
-/// Velocity at the start, and its sigma: zero when standing, else GNSS, else odometer or speed along the heading.
-std::pair<Vector3d, double> velocity_at(Time t, const AidedInsInput& in, const Vector3d& forward_n, bool standing) {
+/// Velocity at the start, and its sigma: zero when standing, else odometer or speed along the heading, else GNSS. Not
+/// GNSS first: what it shows of a vehicle that stands is noise, and an odometer's reading, linearised at a sideways
+/// velocity that is not there, would tell the filter a heading that nobody has measured.
+std::pair<Vector3d, double> velocity_at(Time t, const AidedInsInput& in, const Vector3d& forward_n,
+                                        double heading_sigma, bool standing) {
   if (standing) return {Vector3d::Zero(), 0.02};
+  const auto along = [&](double speed) {
+    return std::pair<Vector3d, double>{forward_n * speed, std::hypot(0.3, std::abs(speed) * (0.03 + heading_sigma))};
+  };
+  const std::size_t d = in.odometer.lower_bound(t);
+  if (d + 1 < in.odometer.size() && (in.odometer[d].time - t).seconds() < 3.0) {
+    const std::size_t e =
+        std::min(in.odometer.size() - 1, in.odometer.lower_bound(in.odometer[d].time + Duration::from_seconds(0.5)));
+    const double dt = (in.odometer[e].time - in.odometer[d].time).seconds();
+    if (dt > 0.0) return along((in.odometer[e].distance - in.odometer[d].distance) / dt);
+  }
+  const std::size_t s = in.speed.lower_bound(t);
+  if (s < in.speed.size() && (in.speed[s].time - t).seconds() < 3.0) return along(in.speed[s].speed);
   const std::size_t g = in.gnss.lower_bound(t);
   if (g < in.gnss.size() && (in.gnss[g].time - t).seconds() < 3.0) {
     if (in.gnss[g].v_ned) return {*in.gnss[g].v_ned, 1.0};
@@ -78,15 +93,6 @@ std::pair<Vector3d, double> velocity_at(Time t, const AidedInsInput& in, const V
               1.0 + 2.0 * in.gnss[g].sigma_ned.maxCoeff() / dt};
     }
   }
-  const std::size_t d = in.odometer.lower_bound(t);
-  if (d + 1 < in.odometer.size() && (in.odometer[d].time - t).seconds() < 3.0) {
-    const std::size_t e =
-        std::min(in.odometer.size() - 1, in.odometer.lower_bound(in.odometer[d].time + Duration::from_seconds(0.5)));
-    const double dt = (in.odometer[e].time - in.odometer[d].time).seconds();
-    if (dt > 0.0) return {forward_n * ((in.odometer[e].distance - in.odometer[d].distance) / dt), 0.5};
-  }
-  const std::size_t s = in.speed.lower_bound(t);
-  if (s < in.speed.size() && (in.speed[s].time - t).seconds() < 3.0) return {forward_n * in.speed[s].speed, 0.5};
   return {Vector3d::Zero(), 10.0};
 }
 
@@ -261,7 +267,7 @@ Expected<Start> start_of(const Segment& segment, const AidedInsInput& in, const 
   nav.q_nb = s.alignment.q_nb;
   const Eigen::Matrix3d C_nb = nav.q_nb.toRotationMatrix();
   const Vector3d forward_n = C_nb * s.estimate.C_vb.row(0).transpose();
-  const auto [velocity, velocity_sigma] = velocity_at(segment.from, in, forward_n, s.standing);
+  const auto [velocity, velocity_sigma] = velocity_at(segment.from, in, forward_n, s.alignment.sigma.z(), s.standing);
   nav.v_eb_n = velocity;
 
   double position_sigma = o.initial_position_sigma;

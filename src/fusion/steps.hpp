@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <array>
 #include <cmath>
 #include <deque>
+#include <memory>
+#include <utility>
 
 #include "versine/filter/kernels.hpp"
 #include "versine/fusion/ins_state.hpp"
@@ -13,8 +14,8 @@ namespace versine::fusion::detail {
 struct StepNoise {
   double dt = 0.0;           ///< s
   double way = 0.0;          ///< m travelled
-  double inflation = 0.0;    ///< m^2 added to the position after the filter lost trust in itself
-  double rocking = 0.0;      ///< m^2 added to the position where a standstill begins or ends
+  float position = 0.0F;     ///< m^2 added: rocking where a standstill begins or ends, and lost trust in the filter
+  float velocity = 0.0F;     ///< (m/s)^2 added after the filter lost trust in itself
   bool new_distance = true;  ///< the odometer's distance starts anew (or is not in use): nothing of its past is kept
 };
 
@@ -34,13 +35,13 @@ class NoiseModel {
     const auto set = [&](auto block, double variance) {
       t.noise.template segment<decltype(block)::size>(block.offset).setConstant(variance);
     };
-    set(l_.position, s.inflation + s.rocking);
-    set(l_.velocity, a.random_walk * a.random_walk * s.dt + 0.01 * s.inflation);
+    set(l_.position, double{s.position});
+    set(l_.velocity, a.random_walk * a.random_walk * s.dt + double{s.velocity});
     set(l_.attitude, g.random_walk * g.random_walk * s.dt);
     set(l_.distance, s.new_distance ? 2.0 * o_.odometer_sigma * o_.odometer_sigma
                                     : o_.odometer_random_walk * o_.odometer_random_walk * s.way + 1e-14);
     set(l_.gyro_bias, walk(g) * s.dt);
-    set(l_.accelerometer_bias, walk(a) * s.dt);
+    set(l_.accelerometer_bias, walk(a) * s.dt + o_.gravity_walk * o_.gravity_walk * s.way);
     set(l_.odometer_scale, o_.odometer_scale_walk * o_.odometer_scale_walk * s.dt);
     if (l_.gnss_bias.enabled()) {
       const double decay = std::exp(-s.dt / o_.gnss_bias_time);
@@ -61,21 +62,34 @@ class NoiseModel {
   const InsLayout& l_;
 };
 
-/// A step of the forward pass as it is kept for the smoother: float but for the estimate (its 7 digits change a sigma
-/// by 1e-6 of itself and a position by 1e-6 of what the smoother corrects).
-template <int N>
-struct Step {
-  static constexpr int n = filter::capacity<N>;
-  StepNoise noise;
-  std::size_t first_row = 0, rows = 0;
-  std::array<float, n*(n + 1) / 2> covariance{};       ///< after the updates at the step's end
-  std::array<float, filter::moving * n> transition{};  ///< full rows less the identity, of the step
+/// Room for numbers in large pieces: what a run of hours keeps is exactly as long as its states are many.
+class Arena {
+ public:
+  [[nodiscard]] float* take(std::size_t count) {
+    if (used_ + count > piece) pieces_.push_back(std::make_unique_for_overwrite<float[]>(piece)), used_ = 0;
+    return pieces_.back().get() + std::exchange(used_, used_ + count);
+  }
+  void clear() { pieces_.clear(), used_ = piece; }
+
+ private:
+  static constexpr std::size_t piece = 1U << 18U;
+  std::vector<std::unique_ptr<float[]>> pieces_;
+  std::size_t used_ = piece;
 };
 
-template <int N>
+/// A step of the forward pass as it is kept for the smoother: float but for the estimate (its 7 digits change a sigma
+/// by 1e-6 of itself and a position by 1e-6 of what the smoother corrects). n states.
+struct Step {
+  StepNoise noise;
+  std::size_t first_row = 0, rows = 0;
+  float* covariance = nullptr;  ///< after the updates at the step's end: n (n + 1) / 2 of its upper triangle
+  float* transition = nullptr;  ///< full rows less the identity, of the step: moving x n
+};
+
 struct Row {
   float innovation = 0, variance = 1;
-  std::array<float, filter::capacity<N>> h{}, gain{};
+  float* h = nullptr;     ///< n
+  float* gain = nullptr;  ///< n
 };
 
 /// The estimate after the updates at a step's end, and where the IMU stands there.
@@ -85,15 +99,17 @@ struct Waypoint {
   bool held = false;  ///< the step that ends here is part of a standstill: the position stays as it was
 };
 
-template <int N>
 struct Steps {
-  std::vector<Waypoint> waypoints;  ///< one more than steps would need: [0] is the start; step k ends at waypoint k
-  std::deque<Step<N>> steps;        ///< steps[0] holds the covariance at the start only
-  std::deque<Row<N>> rows;
+  std::deque<Waypoint> waypoints;  ///< one more than steps would need: [0] is the start; step k ends at waypoint k
+  std::deque<Step> steps;          ///< steps[0] holds the covariance at the start only
+  std::deque<Row> rows;
+  Arena arena;
 };
 
 template <int N>
-void pack(const filter::StateMatrix<N>& P, Step<N>& s) {
+void pack(const filter::StateMatrix<N>& P, Arena& arena, Step& s) {
+  const auto n = static_cast<std::size_t>(P.cols());
+  s.covariance = arena.take(n * (n + 1) / 2);
   std::size_t k = 0;
   for (Eigen::Index j = 0; j < P.cols(); ++j) {
     for (Eigen::Index i = 0; i <= j; ++i) s.covariance[k++] = static_cast<float>(P(i, j));
@@ -101,7 +117,7 @@ void pack(const filter::StateMatrix<N>& P, Step<N>& s) {
 }
 
 template <int N>
-void unpack(const Step<N>& s, filter::StateMatrix<N>& P) {
+void unpack(const Step& s, filter::StateMatrix<N>& P) {
   std::size_t k = 0;
   for (Eigen::Index j = 0; j < P.cols(); ++j) {
     for (Eigen::Index i = 0; i <= j; ++i) P(i, j) = P(j, i) = static_cast<double>(s.covariance[k++]);
@@ -109,7 +125,8 @@ void unpack(const Step<N>& s, filter::StateMatrix<N>& P) {
 }
 
 template <int N>
-void pack_transition(const filter::Transition<N>& t, Step<N>& s) {
+void pack_transition(const filter::Transition<N>& t, Arena& arena, Step& s) {
+  s.transition = arena.take(static_cast<std::size_t>(t.top.size()));
   for (Eigen::Index j = 0; j < t.top.cols(); ++j) {
     for (int i = 0; i < filter::moving; ++i) {
       s.transition[static_cast<std::size_t>(j * filter::moving + i)] =
@@ -119,7 +136,7 @@ void pack_transition(const filter::Transition<N>& t, Step<N>& s) {
 }
 
 template <int N>
-void unpack_transition(const Step<N>& s, const NoiseModel& noise, filter::Transition<N>& t, int n) {
+void unpack_transition(const Step& s, const NoiseModel& noise, filter::Transition<N>& t, int n) {
   t.top.resize(filter::moving, n);
   for (Eigen::Index j = 0; j < n; ++j) {
     for (int i = 0; i < filter::moving; ++i) {

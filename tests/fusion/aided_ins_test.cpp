@@ -3,23 +3,14 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-
-#include "fusion/scenario.hpp"
-#include "versine/filter/consistency.hpp"
+#include "fusion/run.hpp"
 
 namespace versine::fusion {
 namespace {
 using test::Scenario;
 using test::Simulated;
 
-AidedInsResult solve(const Simulated& run) {
-  SilentProgress progress;
-  SilentLog log;
-  auto r = run_aided_ins(run.input, run.options, progress, log);
-  if (!r) throw std::runtime_error(r.error().message());
-  return *r;
-}
+using test::solve;
 
 /// Largest error in sigmas (position, over all points), and whether everything is finite.
 double worst_ratio(const Scenario& s, const Simulated& run, const AidedInsResult& r, double* worst_position = nullptr) {
@@ -89,93 +80,6 @@ TEST(AidedIns, SmoothedVariancesAreNeverAboveTheFilters) {
       ASSERT_LE(a.zz, b.zz * 1.0001f) << i;
     }
   }
-}
-
-TEST(AidedIns, HundredRunsAreConsistent) {
-  // NEES of the smoothed position, velocity and attitude at the middle, NIS of the sensors: inside 95 % bounds.
-  const Scenario base{
-      .motion = {.speed = 8.0, .swing = 3.0, .turn = 0.8, .climb = 0.02, .roll = 0.03, .period = 20.0, .still = 6.0},
-      .duration = 24.0,
-      .rate = 100.0};
-  double position = 0, velocity = 0, attitude = 0, nis = 0;
-  std::size_t rows = 0;
-  const int runs = 100;
-  for (int i = 0; i < runs; ++i) {
-    Simulated run = test::make(base, 1000 + unsigned(i));
-    run.options.odometer_scale_sigma = 0.004;
-    run.options.gate_probability = 1e-12;
-    run.options.odometer_random_walk = 1e-5;
-    run.options.zero_velocity = false;
-    const AidedInsResult r = solve(run);
-    const auto& p = r.solution.smoothed[1500];
-    const auto e = test::error_at(p, test::truth_at(base, run.truth, (p.time - base.motion.epoch).seconds()));
-    position += e.position.dot(p.position_covariance.matrix().inverse() * e.position);
-    velocity += e.velocity.dot(p.velocity_covariance.matrix().inverse() * e.velocity);
-    attitude += e.attitude.dot(p.attitude_covariance.matrix().inverse() * e.attitude);
-    for (const Innovation& v : r.solution.innovations) {
-      if (v.sensor != "gnss position" && v.sensor != "gnss velocity") continue;
-      nis += v.nis;
-      rows += std::size_t(v.value.size());
-    }
-  }
-  const filter::Bounds nees = filter::mean_chi_square_bounds(runs, 3.0),
-                       of_nis = filter::mean_chi_square_bounds(rows, 1.0);
-  RecordProperty("nees", std::to_string(position / (3 * runs)) + " " + std::to_string(velocity / (3 * runs)) + " " +
-                             std::to_string(attitude / (3 * runs)));
-  for (const double mean : {position / (3 * runs), velocity / (3 * runs), attitude / (3 * runs)}) {
-    EXPECT_GT(mean, nees.lower);
-    EXPECT_LT(mean, nees.upper);
-  }
-  // The first fix of each run also gave the start (its variance counted 25 times): that is 1 of 24 epochs.
-  EXPECT_GT(nis / double(rows), of_nis.lower - 0.03);
-  EXPECT_LT(nis / double(rows), of_nis.upper);
-}
-
-TEST(AidedIns, FaultGapOfTwoSecondsStartsASegment) {
-  const Scenario s;
-  Simulated run = test::make(s, 5);
-  auto& imu = run.input.imu.samples;
-  const auto first = imu.begin() + 14000;
-  imu.erase(first, first + 400);
-  const AidedInsResult r = solve(run);
-  ASSERT_EQ(r.segments.size(), 2u);
-  double position = 0;
-  EXPECT_LT(worst_ratio(s, run, r, &position), 4.5);
-  EXPECT_LT(position, 0.2);
-  EXPECT_EQ(r.solution.smoothed.samples.back().segment, 1);
-}
-
-TEST(AidedIns, FaultFiveOutliersAreRejectedAndRecorded) {
-  const Scenario s;
-  Simulated run = test::make(s, 6);
-  for (std::size_t i = 60; i < 65; ++i) {
-    run.input.gnss[i].position = geodesy::wgs84.displaced(run.input.gnss[i].position, {1.5, 1.6, 0.0});
-  }
-  const AidedInsResult r = solve(run);
-  std::size_t rejected = 0;
-  for (const Rejection& x : r.solution.record.rejections) rejected += x.sensor == "gnss position" ? 1u : 0u;
-  EXPECT_EQ(rejected, 5u);
-  EXPECT_LT(worst_ratio(s, run, r), 4.5);
-}
-
-TEST(AidedIns, FaultGnssStampsOffTheImuEpochsCostNothing) {
-  Scenario s{.gnss_shift = 0.0009, .noise = false};
-  s.motion.speed = 20.0;
-  Simulated run = test::make(s, 7);
-  run.options.initial_heading = 0.5;
-  for (auto& g : run.input.gnss.samples) g.sigma_ned.setConstant(0.002);
-  double position = 0;
-  worst_ratio(s, run, solve(run), &position);
-  EXPECT_LT(position, 2e-3);  // 18 mm if the state were not brought to the stamp
-}
-
-TEST(AidedIns, FaultNotANumberInGnssIsRejected) {
-  const Scenario s;
-  Simulated run = test::make(s, 8);
-  run.input.gnss[50].position.height = std::nan("");
-  const AidedInsResult r = solve(run);
-  EXPECT_FALSE(r.solution.record.rejections.empty());
-  EXPECT_LT(worst_ratio(s, run, r), 4.5);
 }
 
 TEST(AidedIns, OutageIsBridgedByOdometerAndConstraint) {

@@ -79,7 +79,7 @@ TEST(MeasurementModels, JacobiansMatchPerturbation) {
   expect_jacobian(
       s, [&](const InsMoment& m) { return gnss_position(m, l, gnss, Vector3d::Ones()); }, 5e-5);
   expect_jacobian(
-      s, [&](const InsMoment& m) { return gnss_velocity(m, l, gnss, 0.1); }, 2e-4);
+      s, [&](const InsMoment& m) { return gnss_velocity(m, l, gnss, Vector3d::Constant(0.1)); }, 2e-4);
   expect_jacobian(
       s,
       [&](const InsMoment& m) {

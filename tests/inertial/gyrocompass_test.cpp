@@ -5,6 +5,7 @@
 
 #include "versine/core/units.hpp"
 #include "versine/inertial/alignment.hpp"
+#include "versine/inertial/earth_rate.hpp"
 
 namespace versine::inertial {
 namespace {
@@ -53,10 +54,25 @@ TEST(Gyrocompass, FindsHeadingWhetherItRocksOrNot) {
   }
 }
 
+TEST(EarthRate, IsSeenThroughRocking) {
+  const auto errors = sensors::find_imu_grade("navigation-rlg")->errors;
+  for (const double rock : {0.0, 0.003}) {
+    const auto imu = standing_imu(1.0, rock, 600.0);
+    const auto e = measured_earth_rate(imu, {{0}, Time::from_seconds(600)}, errors);
+    ASSERT_TRUE(e);
+    EXPECT_NEAR(e->omega_ib_b.norm(), geodesy::wgs84.omega(), 4.0 * e->sigma) << rock;
+    EXPECT_NEAR(e->vertical, geodesy::wgs84.omega() * std::sin(0.6), 4.0 * e->sigma) << rock;
+    EXPECT_NEAR(e->horizontal, geodesy::wgs84.omega() * std::cos(0.6), 4.0 * e->sigma) << rock;
+    EXPECT_LT(e->sigma, 0.1 * units::deg_per_hour + (rock > 0.0 ? 1.0 * units::deg_per_hour : 0.0)) << rock;
+  }
+  EXPECT_FALSE(measured_earth_rate(standing_imu(1.0, 0.0, 30.0), {{0}, Time::from_seconds(30)}, errors));
+}
+
 // The mean of the rates, which this replaced, was 71 degrees wrong on a real rocking vehicle, with a sigma of 0.5.
 TEST(Gyrocompass, RefusesGyrosThatSeeNoEarthRate) {
   const auto imu = standing_imu(1.0, 0.0, 60.0);
-  const auto a = gyrocompass(imu, {{0}, Time::from_seconds(60)}, {0.6, 1.9, 380.0}, sensors::find_imu_grade("mems")->errors);
+  const auto a =
+      gyrocompass(imu, {{0}, Time::from_seconds(60)}, {0.6, 1.9, 380.0}, sensors::find_imu_grade("mems")->errors);
   ASSERT_FALSE(a);
   EXPECT_FALSE(a.error().advice.empty());
 }

@@ -11,6 +11,7 @@
 #include "versine/app/withhold.hpp"
 #include "versine/core/progress.hpp"
 #include "versine/fusion/aided_ins.hpp"
+#include "versine/inertial/earth_rate.hpp"
 
 /// `versine survey`: from a recording to a trajectory with its uncertainty.
 namespace versine::app {
@@ -22,6 +23,7 @@ struct SurveyResult {
   std::optional<GeometryResult> geometry;
   std::optional<ControlCheck> control;
   std::vector<std::string> warnings;  ///< of input and estimate, once written
+  std::optional<inertial::EarthRate> earth_rate;  ///< from the longest standstill, where the gyros can tell it
   std::vector<std::pair<std::string, double>> timings_s;
 };
 

@@ -25,6 +25,14 @@ struct Transition {
   Eigen::Matrix<double, moving, N, Eigen::ColMajor, moving, capacity<N>> top;
   StateVector<N> decay;  ///< entries of the moving states are not used
   StateVector<N> noise;
+
+  /// The whole transition.
+  [[nodiscard]] StateMatrix<N> matrix() const {
+    StateMatrix<N> m = StateMatrix<N>::Zero(decay.size(), decay.size());
+    m.diagonal() = decay;
+    m.template topRows<moving>() = top;
+    return m;
+  }
 };
 
 /// P after the transition; symmetric.
@@ -143,6 +151,7 @@ bool rts_gain(const StateMatrix<N>& P, const Transition<N>& phi, StateMatrix<N>&
 
 extern template bool rts_gain<23>(const StateMatrix<23>&, const Transition<23>&, StateMatrix<23>&, StateMatrix<23>&);
 extern template bool rts_gain<25>(const StateMatrix<25>&, const Transition<25>&, StateMatrix<25>&, StateMatrix<25>&);
+extern template bool rts_gain<26>(const StateMatrix<26>&, const Transition<26>&, StateMatrix<26>&, StateMatrix<26>&);
 extern template bool rts_gain<Eigen::Dynamic>(const StateMatrix<Eigen::Dynamic>&, const Transition<Eigen::Dynamic>&,
                                               StateMatrix<Eigen::Dynamic>&, StateMatrix<Eigen::Dynamic>&);
 

@@ -111,10 +111,13 @@ struct AidedInsOptions {
   double gate_probability = 1e-5;  ///< chance that a good measurement is rejected
   RobustWeight robust = RobustWeight::none;
   int most_rejections = 10;   ///< after so many in a row of one sensor the filter, not the sensor, is doubted,
-  double doubt_after = 60.0;  ///< s; of positions, if they have lasted this long: a wrong ambiguity lasts for seconds
+  double doubt_after = 60.0;  ///< s; of positions, if they have lasted this long, or as long as the segment before
   int monitor_length = 30;    ///< innovations of one sensor whose mean is watched for slow faults; 0: off
 
   // --- numbers
+  /// m/s^2 per root of the metres travelled; change of gravity against its normal value, in size and direction. It acts
+  /// on the accelerometers' biases: without it a filter believes that it sees a bias turn in a canted curve.
+  double gravity_walk = 1.6e-6;
   double covariance_rate = 10.0;       ///< Hz
   double longest_imu_interval = 0.05;  ///< s (or five nominal intervals, if longer); longer: a new segment
   SmootherKind smoother = SmootherKind::bryson_frazier;

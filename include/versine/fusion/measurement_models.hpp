@@ -12,7 +12,7 @@ namespace versine::fusion {
                                                const sensors::GnssSample& sample, const Eigen::Vector3d& sigma_ned);
 /// Antenna velocity (Groves eq. 14.104). REQUIRES sample.v_ned.
 [[nodiscard]] filter::Linearized gnss_velocity(const InsMoment& m, const InsLayout& layout,
-                                               const sensors::GnssSample& sample, double sigma_minimum);
+                                               const sensors::GnssSample& sample, const Eigen::Vector3d& sigma_ned);
 /// Reading of the odometer's distance counter.
 [[nodiscard]] filter::Linearized odometer_distance(const InsMoment& m, const InsLayout& layout,
                                                    const sensors::OdometerSample& sample, double sigma);
@@ -49,6 +49,11 @@ struct WheelVelocity {
   Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor, 3, filter::max_states> H;
 };
 [[nodiscard]] WheelVelocity wheel_velocity(const InsMoment& m, const InsLayout& layout);
+
+/// The moment with the velocity that a vehicle on its wheels has: at the wheel forward only, as fast as estimated. At
+/// which velocity wheel models are linearised matters: at the estimate itself, whose sideways part is noise while the
+/// vehicle stands, an odometer would seem to tell a heading (and the filter would believe a sigma of a quarter).
+[[nodiscard]] InsMoment on_wheels(const InsMoment& m);
 
 /// Rate of the odometer's reading, m/s, and its derivative: how its distance error grows.
 struct DistanceRate {

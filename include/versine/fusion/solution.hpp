@@ -13,10 +13,10 @@ namespace versine::fusion {
 /// A measurement as the filter saw it.
 struct Innovation {
   Time time;
-  std::string sensor;        ///< "gnss position", "odometer", "constraint", "zero velocity", "landmark", ...
-  Eigen::VectorXf value;     ///< measured minus predicted, in the unit of the measurement
-  Eigen::VectorXf sigma;     ///< square roots of the diagonal of its covariance
-  double nis = 0.0;          ///< normalised innovation squared; chi-square with value.size() degrees of freedom
+  std::string sensor;     ///< "gnss position", "odometer", "constraint", "zero velocity", "landmark", ...
+  Eigen::VectorXf value;  ///< measured minus predicted, in the unit of the measurement
+  Eigen::VectorXf sigma;  ///< square roots of the diagonal of its covariance
+  double nis = 0.0;       ///< normalised innovation squared; chi-square with value.size() degrees of freedom
   bool used = true;
 };
 
@@ -32,10 +32,10 @@ struct SensorErrorSample {
 /// works on either.
 struct Solution {
   geodesy::Trajectory smoothed;
-  geodesy::Trajectory forward;                  ///< empty unless asked for
+  geodesy::Trajectory forward;  ///< empty unless asked for
   std::vector<std::string> error_names;
   std::vector<SensorErrorSample> sensor_errors;  ///< smoothed
-  filter::ErrorChain chain;                     ///< at a lower rate than the trajectory; empty unless asked for
+  filter::ErrorChain chain;                      ///< at a lower rate than the trajectory; empty unless asked for
   std::vector<Innovation> innovations;
   RunRecord record;
 };

@@ -24,7 +24,7 @@ filter::Linearized gnss_position(const InsMoment& m, const InsLayout& layout, co
 }
 
 filter::Linearized gnss_velocity(const InsMoment& m, const InsLayout& layout, const sensors::GnssSample& sample,
-                                 double sigma_minimum) {
+                                 const Vector3d& sigma_ned) {
   filter::Linearized l(3, layout.size());
   const InsEstimate& e = m.estimate;
   const Vector3d swing_b = m.omega_nb_b.cross(e.gnss_lever), swing_n = m.C_nb * swing_b;
@@ -35,7 +35,7 @@ filter::Linearized gnss_velocity(const InsMoment& m, const InsLayout& layout, co
   l.H.middleCols<3>(layout.gyro_bias.offset) = rate;
   l.H.middleCols<3>(layout.gyro_scale.offset) = rate * m.omega_ib_b.asDiagonal();
   if (layout.gnss_lever.enabled()) l.H.middleCols<3>(layout.gnss_lever.offset) = -m.C_nb * skew(m.omega_nb_b);
-  l.R.diagonal() = sample.sigma_v_ned.cwiseMax(sigma_minimum).cwiseAbs2();
+  l.R.diagonal() = sigma_ned.cwiseAbs2();
   return l;
 }
 

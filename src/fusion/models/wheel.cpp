@@ -25,6 +25,15 @@ WheelVelocity wheel_velocity(const InsMoment& m, const InsLayout& layout) {
   return w;
 }
 
+InsMoment on_wheels(const InsMoment& m) {
+  InsMoment along = m;
+  InsEstimate& e = along.estimate;
+  const Vector3d swing_b = m.omega_nb_b.cross(e.wheel_lever);
+  const double speed = e.C_vb.row(0).dot(m.C_nb.transpose() * e.nav.v_eb_n + swing_b);
+  e.nav.v_eb_n = m.C_nb * (e.C_vb.row(0).transpose() * speed - swing_b);
+  return along;
+}
+
 DistanceRate distance_rate(const InsMoment& m, const InsLayout& layout) {
   const WheelVelocity w = wheel_velocity(m, layout);
   const double k = 1.0 + m.estimate.odometer_scale;
