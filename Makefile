@@ -4,7 +4,7 @@ JOBS ?= $(shell nproc)
 BUILD := build/release
 VERSINE := $(BUILD)/apps/versine/versine
 
-.PHONY: all setup build test demo screenshots report-images accuracy figures benchmarks format clean accuracy-positioning accuracy-georef
+.PHONY: all setup build test demo screenshots report-images accuracy figures benchmarks format clean accuracy-positioning accuracy-georef accuracy-track
 all: build
 
 setup:
@@ -85,6 +85,12 @@ accuracy-georef: build
 	cmake --build $(BUILD) -j $(JOBS) --target versine_georef_brussels versine_georef_accuracy
 	$(BUILD)/benchmarks/versine_georef_brussels $${VERSINE_DATA:-../shared/data}
 	$(BUILD)/benchmarks/versine_georef_accuracy --data $${VERSINE_DATA:-../shared/data} --svg docs/images/georef-reliability.svg
+
+# Track geometry of simulated surveys against the true rails, 20 seeds each (docs/track-geometry.md).
+accuracy-track: setup
+	cmake --preset release -DVERSINE_BENCHMARKS=ON
+	cmake --build $(BUILD) -j $(JOBS) --target versine_track_accuracy
+	$(BUILD)/benchmarks/versine_track_accuracy 20 $(addprefix benchmarks/scenarios/track-,ts120.toml ts60.toml gnss.toml)
 
 format:
 	git ls-files '*.cpp' '*.hpp' | xargs clang-format -i

@@ -8,9 +8,6 @@
 
 #include "track/test_run.hpp"
 #include "versine/app/geometry.hpp"
-#include "versine/io/geometry_csv.hpp"
-#include "versine/io/geometry_gis.hpp"
-#include "versine/io/geometry_xlsx.hpp"
 
 using namespace versine;
 
@@ -81,22 +78,23 @@ int main(int argc, char** argv) {
   if (!limits) return std::printf("%s\n", limits.error().message().c_str()), 1;
   const auto quality = track::assess(*g, *limits, 160 / 3.6);
   const double assessed = cpu();
-  const auto folder = std::filesystem::temp_directory_path() / "versine_track_100km";
-  std::filesystem::remove_all(folder);
-  std::filesystem::create_directories(folder);
-  std::vector<std::pair<const char*, double>> times = {{"compute", computed - start}, {"quality", assessed - computed}};
-  const auto write = [&](const char* name, auto&& done) {
-    const double t = cpu();
-    if (const auto r = done(); !r) std::printf("%s\n", r.error().message().c_str());
-    times.emplace_back(name, cpu() - t);
-  };
-  write("csv", [&] { return io::write_geometry_csv(folder / "geometry.csv", *g); });
-  write("gpkg", [&] { return io::write_geometry_gpkg(folder / "result.gpkg", *g, &*quality); });
-  write("xlsx", [&] { return io::write_geometry_xlsx(folder / "geometry.xlsx", *g, &*quality, nullptr); });
-  std::printf("%zu points, %zu columns, %zu exceedances\n", g->size(), g->columns.size(), quality->exceedances.size());
-  for (const auto& [name, t] : times) std::printf("  %-8s %6.2f s\n", name, t);
+  const double before_files = seconds();
+  app::GeometryResult result;
+  result.geometry = std::move(*g);
+  result.quality = std::move(*quality);
+  const auto target = std::filesystem::temp_directory_path() / "versine_track_100km";
+  auto folder = io::ResultFolder::create(target);
+  if (!folder) return std::printf("%s\n", folder.error().message().c_str()), 1;
+  if (const auto done = app::write_track_geometry({}, result, *folder, progress); !done)
+    return std::printf("%s\n", done.error().message().c_str()), 1;
+  const double written = cpu();
+  const std::vector<std::pair<const char*, double>> times = {
+      {"compute", computed - start}, {"quality", assessed - computed}, {"files", written - assessed}};
+  std::printf("%zu points, %zu columns, %zu exceedances\n", result.geometry.size(), result.geometry.columns.size(),
+              result.quality->exceedances.size());
+  for (const auto& [name, t] : times) std::printf("  %-8s %6.2f s of CPU\n", name, t);
+  std::printf("  files took %.2f s of wall time\n", seconds() - before_files);
   std::printf("CPU %.2f s, wall %.2f s, peak memory %.0f MB (%.0f MB of it input)\n", cpu() - start, seconds(),
               megabytes(), input_mb);
-  std::filesystem::remove_all(folder);
   return 0;
 }

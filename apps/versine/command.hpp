@@ -21,6 +21,7 @@ enum Exit : int {
 /// All commands. Each declares its options and leaves a callback that sets `exit`. A new command is one file in
 /// commands/, its line here and its place in main.cpp's list, which is the order of the help.
 void add_batch(CLI::App& app, int& exit);
+void add_axis(CLI::App& app, int& exit);
 void add_calibrate(CLI::App& app, int& exit);
 void add_check(CLI::App& app, int& exit);
 void add_geometry(CLI::App& app, int& exit);

@@ -38,7 +38,7 @@ int main(int argc, char** argv) {
   int exit = good;
   for (const auto add :
        {add_init, add_check, add_info, add_simulate, add_survey, add_geometry, add_calibrate, add_gnss, add_stationing,
-        add_plan, add_report, add_view, add_compare, add_alignment, add_georef, add_batch, add_network}) {
+        add_plan, add_report, add_view, add_compare, add_alignment, add_axis, add_georef, add_batch, add_network}) {
     add(app, exit);
   }
   try {

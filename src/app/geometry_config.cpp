@@ -80,6 +80,30 @@ void describe_design(ConfigVisitor& v, GeometryConfig& c) {
           {.doc = "Without design: fit an optimal axis, refer deviations to it, write axis.xml."});
 }
 
+constexpr Words<CoordinatesConfig::Model, 3> models{{{"none", CoordinatesConfig::Model::none},
+                                                     {"plane", CoordinatesConfig::Model::plane},
+                                                     {"space", CoordinatesConfig::Model::space}}};
+constexpr Words<CoordinatesConfig::Heights, 4> height_models{{{"none", CoordinatesConfig::Heights::none},
+                                                              {"offset", CoordinatesConfig::Heights::offset},
+                                                              {"plane", CoordinatesConfig::Heights::plane},
+                                                              {"geoid", CoordinatesConfig::Heights::geoid}}};
+
+void describe_coordinates(ConfigVisitor& v, CoordinatesConfig& c) {
+  v.value("points", c.points.file,
+          {.doc = "Common points: CSV with name, easting_m, northing_m, height_m (in crs, ellipsoidal), "
+                  "project_easting_m, project_northing_m, project_height_m, sigma_mm.",
+           .example = "\"common_points.csv\""});
+  c.points.description.path = c.points.file.path;
+  v.choice<CoordinatesConfig::Model>(
+      "similarity", c.model, models,
+      {.doc = "To the project's own grid: 4 parameters in the plane, 7 in space, or none."});
+  v.value("fixed_scale", c.fixed_scale, {.doc = "Without a scale factor."});
+  v.choice<CoordinatesConfig::Heights>(
+      "heights", c.heights, height_models,
+      {.doc = "To the project's heights: an offset or a tilted plane through the common points, or a geoid."});
+  v.value("geoid", c.geoid, {.doc = "Geoid grid, as PROJ finds it.", .example = "\"egm96_15.gtx\""});
+}
+
 void describe_mileage(ConfigVisitor& v, GeometryConfig& c) {
   auto& o = c.options;
   v.choice<track::MileageSource>("mileage", o.mileage_source, mileages,
@@ -156,11 +180,39 @@ void describe_adjustment(ConfigVisitor& v, GeometryConfig& c) {
   v.value("decimal_comma", c.table.decimal_comma, {.doc = "Instead of a point."});
 }
 
+void describe_shims(ConfigVisitor& v, track::FasteningOptions& o) {
+  v.value("step_mm", o.step, {.doc = "Of shims or wedges.", .unit = "mm", .scale = units::mm, .positive = true});
+  v.value("lowest_mm", o.lowest, millimetres("Most negative movement of a fastening.", -100, 0));
+  v.value("highest_mm", o.highest, millimetres("Largest movement.", 0, 100));
+  v.value("deviation_limit_mm", o.deviation_limit, millimetres("Left from design, at most.", 0));
+  v.value("difference_limit_mm", o.difference_limit, millimetres("Left of gauge or cross level, at most.", 0));
+  v.value("neighbour_limit_mm", o.neighbour_limit, millimetres("Between movements of neighbours, at most.", 0));
+  v.value("check_limits_mm", o.check_limits,
+          {.doc = "Of each check: 30 m chord, 5 m apart.", .unit = "mm", .scale = units::mm, .positive = true});
+}
+
+void describe_fastenings(ConfigVisitor& v, FasteningConfig& c) {
+  constexpr Words<FasteningConfig::Reference, 2> rails{
+      {{"left", FasteningConfig::Reference::left}, {"right", FasteningConfig::Reference::right}}};
+  v.value("on", c.on, {.doc = "Plan the fine adjustment of a slab track: fewest fastenings, whole shims."});
+  v.value("spacing_m", c.spacing, length("Of fastenings, where no sleepers were detected.", 10));
+  v.choice<FasteningConfig::Reference>("reference", c.reference, rails, {.doc = "Rail that is adjusted first."});
+  v.table("lateral", "Movement across, positive right.", [&](ConfigVisitor& t) { describe_shims(t, c.lateral); });
+  v.table("vertical", "Movement of height.", [&](ConfigVisitor& t) { describe_shims(t, c.vertical); });
+}
+
 }  // namespace
 
 void describe(ConfigVisitor& v, GeometryConfig& c) {
   describe_design(v, c);
   describe_mileage(v, c);
+  v.table("coordinates", "To a grid and heights of the project's own.",
+          [&](ConfigVisitor& t) { describe_coordinates(t, c.coordinates); });
+  v.value("error_correlation_m", c.error_correlation,
+          {.doc = "For trajectories without joint errors: over this way the trajectory's errors change. 0: versines, "
+                  "checks, bands and twist have no sigma then.",
+           .unit = "m",
+           .min = 0});
   describe_parameters(v, c.options);
   v.table("trolley", "Wheels, rollers and gauge sensor.", [&](ConfigVisitor& t) { describe_trolley(t, c.trolley); });
   v.table("gauge", "The gauge sensor's file.", [&](ConfigVisitor& t) { describe(t, c.gauge); });
@@ -171,6 +223,8 @@ void describe(ConfigVisitor& v, GeometryConfig& c) {
     t.value("speed_kmh", c.speed, {.doc = "Speed of the line.", .unit = "km/h", .scale = units::kmh, .positive = true});
   });
   v.table("adjustment", "Lining and lifting.", [&](ConfigVisitor& t) { describe_adjustment(t, c); });
+  v.table("fastenings", "Fine adjustment of a slab track.",
+          [&](ConfigVisitor& t) { describe_fastenings(t, c.fastenings); });
   v.table("write", "Files of the result.", [&](ConfigVisitor& t) {
     t.value("csv", c.csv, {.doc = "geometry.csv and its companions."});
     t.value("gpkg", c.gpkg, {.doc = "result.gpkg."});

@@ -4,10 +4,11 @@
 #include <ceres/ceres.h>
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "axis_covariance.hpp"
 
 namespace versine::design {
 
@@ -23,8 +24,7 @@ void connect(Chain& chain) {
 
 namespace {
 
-constexpr double shortest_length = 0.05;     // m; the solver keeps lengths above this
-constexpr double correlation_range = 200.0;  // m; residuals further apart count as independent
+constexpr double shortest_length = 0.05;  // m; the solver keeps lengths above this
 
 /// What the unknowns are, and a chain made from their values.
 struct Unknowns {
@@ -266,35 +266,6 @@ class Cost : public ceres::CostFunction {
   const Weights& weights_;
 };
 
-/// Sandwich with a Toeplitz covariance of the residuals, tapered after Bartlett (Newey and West 1987).
-Eigen::MatrixXd robust_covariance(const Eigen::MatrixXd& j, const Eigen::VectorXd& r, double step) {
-  const Eigen::Index n = r.size() / 2, unknowns = j.cols();
-  const auto lags = std::min<Eigen::Index>(n / 4, static_cast<Eigen::Index>(std::ceil(correlation_range / step)));
-  std::vector<Eigen::Matrix2d> gamma(static_cast<std::size_t>(lags) + 1, Eigen::Matrix2d::Zero());
-  const double freedom = std::max(1.0, static_cast<double>(n) - 0.5 * static_cast<double>(unknowns));
-  for (Eigen::Index k = 0; k <= lags; ++k) {
-    auto& g = gamma[static_cast<std::size_t>(k)];
-    for (Eigen::Index i = 0; i + k < n; ++i) g += r.segment<2>(2 * i) * r.segment<2>(2 * (i + k)).transpose();
-    g *= (1.0 - static_cast<double>(k) / (static_cast<double>(lags) + 1.0)) / freedom;
-  }
-  Eigen::MatrixXd meat = Eigen::MatrixXd::Zero(unknowns, unknowns);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    Eigen::MatrixXd carried = gamma[0] * j.middleRows(2 * i, 2);
-    for (Eigen::Index k = 1; k <= lags; ++k) {
-      if (i + k < n) carried += gamma[static_cast<std::size_t>(k)] * j.middleRows(2 * (i + k), 2);
-      if (i - k >= 0) carried += gamma[static_cast<std::size_t>(k)].transpose() * j.middleRows(2 * (i - k), 2);
-    }
-    meat += j.middleRows(2 * i, 2).transpose() * carried;
-  }
-  // Unknowns have very different sizes: scale before inverting.
-  const Eigen::VectorXd scale = (j.colwise().norm().transpose().array() + 1e-300).inverse();
-  const Eigen::MatrixXd scaled = j * scale.asDiagonal();
-  const Eigen::MatrixXd bread =
-      (scaled.transpose() * scaled).ldlt().solve(Eigen::MatrixXd::Identity(unknowns, unknowns));
-  const Eigen::MatrixXd inverse = scale.asDiagonal() * bread * scale.asDiagonal();
-  return inverse * meat * inverse;
-}
-
 }  // namespace
 
 ChainFit fit_chain(const Chain& start, std::span<const TrackSample> samples, double huber, bool with_covariance) {
@@ -344,7 +315,7 @@ ChainFit fit_chain(const Chain& start, std::span<const TrackSample> samples, dou
     double* jacobian = j.data();
     cost.Evaluate(&parameter, r.data(), &jacobian);
     const double step = (samples.back().distance - samples.front().distance) / static_cast<double>(n - 1);
-    fit.covariance = robust_covariance(j, r, step);
+    fit.covariance = covariance_of_fit(j, r, 2, step);
   }
   return fit;
 }

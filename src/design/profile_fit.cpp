@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "axis_covariance.hpp"
 #include "versine/design/segmentation.hpp"
 
 namespace versine::design {
@@ -33,6 +34,10 @@ std::vector<Observation> observed(std::span<const TrackSample> samples, const st
     if (std::isfinite(value(samples[i]))) out.push_back({distance[i], value(samples[i])});
   }
   return out;
+}
+
+double spacing_of(const std::vector<Observation>& seen) {
+  return (seen.back().distance - seen.front().distance) / static_cast<double>(seen.size() - 1);
 }
 
 }  // namespace
@@ -70,6 +75,9 @@ void fit_cant(std::span<const TrackSample> samples, const std::vector<double>& d
     sigma = robust_sigma(residual);
     for (Eigen::Index i = 0; i < n; ++i) weight[i] = std::min(1.0, huber * sigma / (std::abs(residual[i]) + 1e-300));
   }
+  const Eigen::VectorXd root = weight.cwiseSqrt();
+  const Eigen::MatrixXd covariance =
+      covariance_of_fit(root.asDiagonal() * a, root.cwiseProduct(residual), 1, spacing_of(seen));
   std::vector<CantPoint> points;
   for (std::size_t e = 0; e < elements.size(); e += 2) {
     const double value = x[static_cast<Eigen::Index>(e / 2)];
@@ -77,8 +85,7 @@ void fit_cant(std::span<const TrackSample> samples, const std::vector<double>& d
     points.push_back({elements[e].distance, value, Shape::clothoid});
     points.push_back({elements[e].distance + elements[e].element.length, value, next});
     const auto k = static_cast<Eigen::Index>(e / 2);
-    // Neighbouring values are correlated over some ten metres; the design of samples has one in two.
-    out.sigma[e].cant = sigma * std::sqrt(5.0 * inverse(k, k));
+    out.sigma[e].cant = std::sqrt(std::max(covariance(k, k), 0.0));
   }
   out.alignment.cant = *CantProfile::from_points(std::move(points));
   out.cant_rms = std::sqrt(residual.squaredNorm() / static_cast<double>(n));
@@ -246,6 +253,40 @@ void order(ProfileChain& c, double end) {
   }
 }
 
+/// Derivatives by differences, then as for the axis.
+std::vector<GradientSigma> gradient_sigmas(const ProfileChain& c, const std::vector<Observation>& seen,
+                                           const Eigen::VectorXd& residual, double huber) {
+  const std::vector<double> x = ProfileCost::values(c);
+  const auto n = static_cast<Eigen::Index>(seen.size());
+  const std::size_t g = c.gradient.size();
+  const double sigma = robust_sigma(residual);
+  const Eigen::VectorXd root = (huber * sigma / (residual.array().abs() + 1e-300)).min(1.0).sqrt();
+  Eigen::MatrixXd j(n, static_cast<Eigen::Index>(x.size()));
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const double h = k == 0 ? 1e-3 : k <= g ? 1e-6 : 0.05;
+    std::vector<double> plus = x, minus = x;
+    plus[k] += h;
+    minus[k] -= h;
+    const ProfileChain a = ProfileCost::chain(c, plus.data()), b = ProfileCost::chain(c, minus.data());
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double s = seen[static_cast<std::size_t>(i)].distance;
+      j(i, static_cast<Eigen::Index>(k)) = root[i] * (a.at(s) - b.at(s)) / (2.0 * h);
+    }
+  }
+  const Eigen::MatrixXd covariance = covariance_of_fit(j, root.cwiseProduct(residual), 1, spacing_of(seen));
+  const auto of = [&](std::size_t k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    return std::sqrt(std::max(covariance(i, i), 0.0));
+  };
+  std::vector<GradientSigma> out(g);
+  for (std::size_t k = 0; k < g; ++k) {
+    out[k].gradient = of(1 + k);
+    if (k > 0) out[k].place = of(1 + g + 2 * (k - 1));
+    if (k > 0) out[k].curve = of(2 + g + 2 * (k - 1));
+  }
+  return out;
+}
+
 }  // namespace
 
 Expected<void> fit_profile(std::span<const TrackSample> samples, const std::vector<double>& distance,
@@ -268,6 +309,7 @@ Expected<void> fit_profile(std::span<const TrackSample> samples, const std::vect
     noise = std::min(noise, robust_sigma(residual));
   }
   order(c, end);
+  out.gradient_sigma = gradient_sigmas(c, seen, residual, options.huber);
   std::vector<VerticalPoint> points = {{.distance = c.start, .height = c.height}};
   for (std::size_t k = 0; k < c.place.size(); ++k) {
     const double height = points.back().height + c.gradient[k] * (c.place[k] - points.back().distance);

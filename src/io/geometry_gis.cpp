@@ -180,7 +180,10 @@ Expected<void> write_geometry_gpkg(const std::filesystem::path& path, const trac
   OGRSpatialReference crs;
   const auto projection = geodesy::Projection::create(g.crs);
   if (!projection) return tl::unexpected(projection.error());
-  crs.SetFromUserInput(projection->wkt().c_str());
+  if (g.own_grid)
+    crs.SetLocalCS("project grid");
+  else
+    crs.SetFromUserInput(projection->wkt().c_str());
   crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   const std::size_t stride = stride_of(g, options);
   const bool good = set->StartTransaction() == OGRERR_NONE && write_lines(*set, crs, g, stride) &&

@@ -77,10 +77,7 @@ Mean mean_of(const std::vector<double>& x, std::size_t per_stretch) {
 }  // namespace
 
 Expected<AttitudeLine> attitude_line(const GeometryInput& input, const GeometryOptions& options, Progress& progress) {
-  auto projection = input.projection ? Expected<geodesy::Projection>(*input.projection)
-                    : input.design != nullptr && !input.design->crs.empty()
-                        ? geodesy::Projection::create(input.design->crs)
-                        : geodesy::Projection::utm(input.trajectory->front().position);
+  const auto projection = map_of(input);
   if (!projection) return tl::unexpected(projection.error());
   auto run = synchronise_mileage(input, options, *projection, options.step / 20.0);
   if (!run) return tl::unexpected(run.error());

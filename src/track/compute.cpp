@@ -17,18 +17,6 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-Expected<geodesy::Projection> projection_of(const GeometryInput& input) {
-  if (input.projection) return *input.projection;
-  if (input.design != nullptr && !input.design->crs.empty()) return geodesy::Projection::create(input.design->crs);
-  if (input.design != nullptr) {
-    return fail({.field = "design",
-                 .found = fmt::format("alignment '{}' without coordinate system", input.design->name),
-                 .expected = "a design whose coordinate system is known",
-                 .advice = "name it in the job (output.crs = \"EPSG:...\")"});
-  }
-  return geodesy::Projection::utm(input.trajectory->front().position);
-}
-
 DesignGrid design_on(const GeometryInput& input, const RunMileage& run, RailGrid& rails,
                      const GeometryOptions& options) {
   DesignGrid out;
@@ -123,6 +111,20 @@ void note_flags(Geometry& out) {
 
 }  // namespace
 
+Expected<geodesy::ProjectMap> map_of(const GeometryInput& input) {
+  const auto projection = [&]() -> Expected<geodesy::Projection> {
+    if (input.projection) return *input.projection;
+    if (input.design == nullptr) return geodesy::Projection::utm(input.trajectory->front().position);
+    if (!input.design->crs.empty()) return geodesy::Projection::create(input.design->crs);
+    return fail({.field = "design",
+                 .found = fmt::format("alignment '{}' without coordinate system", input.design->name),
+                 .expected = "a design whose coordinate system is known",
+                 .advice = "name it in the job (geometry.crs = \"EPSG:...\")"});
+  }();
+  if (!projection) return tl::unexpected(projection.error());
+  return geodesy::ProjectMap{*projection, input.similarity, input.heights};
+}
+
 Expected<Geometry> compute_geometry(const GeometryInput& input, const GeometryOptions& options, Progress& progress) {
   if (input.trajectory == nullptr) throw std::invalid_argument("compute_geometry: no trajectory");
   if (input.trajectory->size() < 2) {
@@ -137,11 +139,11 @@ Expected<Geometry> compute_geometry(const GeometryInput& input, const GeometryOp
                  .expected = "points in order of time",
                  .advice = "sort the file by time and remove duplicates"});
   }
-  const auto projection = projection_of(input);
-  if (!projection) return tl::unexpected(projection.error());
-  auto run = synchronise_mileage(input, options, *projection, options.step / 20.0);
+  const auto map = map_of(input);
+  if (!map) return tl::unexpected(map.error());
+  auto run = synchronise_mileage(input, options, *map, options.step / 20.0);
   if (!run) return tl::unexpected(run.error());
-  RailGrid rails = place_rails(input, options, *projection, *run, progress);
+  RailGrid rails = place_rails(input, options, *map, *run, progress);
   if (progress.cancelled()) return fail({.field = "geometry", .found = "cancelled"});
   const DesignGrid design = design_on(input, *run, rails, options);
 
@@ -150,7 +152,8 @@ Expected<Geometry> compute_geometry(const GeometryInput& input, const GeometryOp
   out.mileage = rails.mileage;
   out.time = rails.time;
   out.time_scale = input.trajectory->scale;
-  out.crs = projection->definition();
+  out.crs = map->projection.definition();
+  out.own_grid = map->similarity.has_value();
   out.height_datum = input.height_datum;
   out.origin = input.trajectory->origin;
   out.record = run->record;

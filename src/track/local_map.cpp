@@ -6,12 +6,12 @@
 
 namespace versine::track {
 
-LocalMap::LocalMap(const geodesy::Geodetic& origin, const geodesy::Projection& projection) : frame_(origin) {
+LocalMap::LocalMap(const geodesy::Geodetic& origin, const geodesy::ProjectMap& projection) : frame_(origin) {
   constexpr double h = 100.0;  // step of the differences, m; the third order that is left is 1e-9 m
   const auto f = [&](const Eigen::Vector3d& ned) -> Eigen::Vector3d {
     const geodesy::Geodetic g = frame_.to_geodetic(ned);
     const geodesy::MapPoint p = projection.forward(g);
-    return {p.easting, p.northing, g.height};
+    return {p.easting, p.northing, p.height};
   };
   value_ = f(Eigen::Vector3d::Zero());
   Eigen::Vector3d plus[3];

@@ -40,7 +40,7 @@ struct Projected {
   double direction = 1.0;
 };
 
-Projected project(const GeometryInput& input, const GeometryOptions& options, const geodesy::Projection& projection,
+Projected project(const GeometryInput& input, const GeometryOptions& options, const geodesy::ProjectMap& projection,
                   const std::vector<double>& way, double every) {
   const geodesy::Trajectory& trajectory = *input.trajectory;
   const Eigen::Matrix3d C_bv = geodesy::to_matrix(input.trolley.mounting).transpose();
@@ -166,7 +166,7 @@ Eigen::Vector3d beam_centre(const Trolley& t, double nominal_gauge) {
 }
 
 Expected<RunMileage> synchronise_mileage(const GeometryInput& input, const GeometryOptions& options,
-                                         const geodesy::Projection& projection, double spacing) {
+                                         const geodesy::ProjectMap& projection, double spacing) {
   const geodesy::Trajectory& trajectory = *input.trajectory;
   RunMileage out;
   std::vector<double> way = way_along(trajectory, geodesy::to_matrix(input.trolley.mounting).transpose());

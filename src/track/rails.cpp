@@ -57,7 +57,7 @@ struct Traces {
 
 class Chunk {
  public:
-  Chunk(const GeometryInput& input, const GeometryOptions& options, const geodesy::Projection& projection,
+  Chunk(const GeometryInput& input, const GeometryOptions& options, const geodesy::ProjectMap& projection,
         const RunMileage& run, const GaugeLine& gauge, std::size_t first, std::size_t last)
       : options_(options), map_((*input.trajectory)[run.epoch[(first + last) / 2]].position, projection) {
     trace(input, run, gauge, first, last);
@@ -173,7 +173,7 @@ void stamp(const geodesy::Trajectory& trajectory, const RunMileage& run, RailGri
 
 }  // namespace
 
-RailGrid place_rails(const GeometryInput& input, const GeometryOptions& options, const geodesy::Projection& projection,
+RailGrid place_rails(const GeometryInput& input, const GeometryOptions& options, const geodesy::ProjectMap& projection,
                      const RunMileage& run, Progress& progress) {
   RailGrid grid = empty_grid(options, run);
   grid.reference_is_left = input.trolley.reference_side() * run.direction < 0.0;

@@ -8,7 +8,9 @@
 #include <fstream>
 
 #include "track/test_run.hpp"
+#include "versine/app/measured_axis.hpp"
 #include "versine/core/units.hpp"
+#include "versine/io/geometry_table.hpp"
 #include "versine/io/landxml.hpp"
 #include "versine/io/write_trajectory.hpp"
 
@@ -57,12 +59,13 @@ TEST_F(GeometryJob, FromAForeignTrajectoryToEveryFile) {
       "limits = '" +
       std::string(VERSINE_SOURCE_DIR) +
       "/data/limits/en13848-5.toml'\n"
-      "[geometry.adjustment]\non = true\n[geometry.write]\ndxf = true\n");
+      "[geometry.adjustment]\non = true\n[geometry.fastenings]\non = true\n[geometry.write]\ndxf = true\n");
   SilentProgress progress;
   const auto run = run_geometry(folder_ / "job.toml", {}, {}, progress);
   ASSERT_TRUE(run) << run.error().message();
-  for (const char* name : {"geometry.csv", "geometry_columns.csv", "exceedances.csv", "sections.csv", "result.gpkg",
-                           "geometry.xlsx", "geometry.dxf", "adjustment.csv", "run.json"}) {
+  for (const char* name :
+       {"geometry.csv", "geometry_columns.csv", "exceedances.csv", "sections.csv", "result.gpkg", "geometry.xlsx",
+        "geometry.dxf", "adjustment.csv", "fastenings.csv", "fastening_parts.csv", "run.json"}) {
     EXPECT_TRUE(fs::exists(run->folder / name)) << name;
   }
   EXPECT_THAT(run->summary_text, HasSubstr("x IAL"));  // the 30 mm fault
@@ -77,6 +80,70 @@ TEST_F(GeometryJob, AxisIsFittedWhereThereIsNoDesign) {
   ASSERT_TRUE(run) << run.error().message();
   EXPECT_TRUE(fs::exists(run->folder / "axis.xml"));
   EXPECT_THAT(run->summary_text, HasSubstr("optimal axis"));
+}
+
+TEST_F(GeometryJob, AxisOfAResultIsWrittenWithSigmas) {
+  write_run("run", 1.0, {});
+  write_job(
+      "job = 'geometry'\n[trajectory]\nfile = 'run.csv'\n[geometry]\ncrs = 'EPSG:25832'\n"
+      "write = {gpkg = false, xlsx = false}\n");
+  SilentProgress progress;
+  const auto run = run_geometry(folder_ / "job.toml", {}, {}, progress);
+  ASSERT_TRUE(run) << run.error().message();
+  const auto axis = run_axis({.result = run->folder, .output = folder_ / "axis.xml"});
+  ASSERT_TRUE(axis) << axis.error().message();
+  EXPECT_LT(axis->axis.offset_rms, 5e-3);
+  ASSERT_FALSE(axis->axis.gradient_sigma.empty());
+  EXPECT_GT(axis->axis.gradient_sigma[0].gradient, 0.0);
+  const auto back = io::read_landxml(folder_ / "axis.xml");
+  ASSERT_TRUE(back) << back.error().message();
+  ASSERT_TRUE(back->front().alignment);
+  EXPECT_NEAR(back->front().alignment->length(), axis->axis.alignment.length(), 1e-3);
+  std::ifstream table(folder_ / "axis.csv");
+  EXPECT_NE(std::string(std::istreambuf_iterator<char>(table), {}).find("sigma_radius_m"), std::string::npos);
+  EXPECT_FALSE(run_axis({.result = folder_, .output = folder_ / "no.xml"}));
+}
+
+TEST_F(GeometryJob, CommonPointsTieTheResultToTheProjectsGrid) {
+  write_run("run", 1.0, {});
+  // The project's grid is the map shifted by whole kilometres, its heights 40 m lower; one point is 0.3 m off.
+  const auto origin = track_.design.at(0.0);
+  std::ofstream points(folder_ / "points.csv");
+  points.precision(12);
+  points << "name,easting_m,northing_m,height_m,project_easting_m,project_northing_m,project_height_m\n";
+  for (int k = 0; k < 6; ++k) {
+    const double e = origin.easting + 400.0 * k, n = origin.northing + 300.0 * (k % 3);
+    points << "P" << k << ',' << e << ',' << n << ",100," << e - 400000.0 + (k == 4 ? 0.3 : 0.0) << ',' << n - 5e6
+           << ",60\n";
+  }
+  points.close();
+  const std::string head = "job = 'geometry'\n[trajectory]\nfile = 'run.csv'\n[geometry]\ncrs = 'EPSG:25832'\n";
+  const std::string tie = "[geometry.coordinates]\npoints = 'points.csv'\nsimilarity = 'plane'\nheights = 'offset'\n";
+  SilentProgress progress;
+  write_job(head);
+  const auto plain = run_geometry(folder_ / "job.toml", {}, folder_ / "plain", progress);
+  ASSERT_TRUE(plain) << plain.error().message();
+  write_job(head + tie);
+  const auto tied = run_geometry(folder_ / "job.toml", {}, folder_ / "tied", progress);
+  ASSERT_TRUE(tied) << tied.error().message();
+  EXPECT_THAT(tied->summary_text, HasSubstr("common point P4 does not fit"));
+  EXPECT_TRUE(fs::exists(tied->folder / "common_points.csv"));
+  const std::vector<std::string> names = {"easting_left_m", "northing_left_m", "height_left_m"};
+  const auto a = io::GeometryTable::open(plain->folder / "geometry.csv")->read(names);
+  const auto b = io::GeometryTable::open(tied->folder / "geometry.csv")->read(names);
+  ASSERT_TRUE(a && b);
+  for (std::size_t i = 0; i < (*a)[0].size(); i += 100) {
+    EXPECT_NEAR((*a)[0][i] - (*b)[0][i], 400000.0, 2e-3);
+    EXPECT_NEAR((*a)[1][i] - (*b)[1][i], 5e6, 2e-3);
+    EXPECT_NEAR((*a)[2][i] - (*b)[2][i], 40.0, 1e-3);
+  }
+  std::ofstream(folder_ / "points.csv")
+      << "name,easting_m,northing_m,project_easting_m,project_northing_m\nA,1,2,3,4\n";
+  const auto one = run_geometry(folder_ / "job.toml", {}, folder_ / "one", progress);
+  ASSERT_FALSE(one);
+  EXPECT_THAT(one.error().message(), HasSubstr("points.csv"));
+  EXPECT_THAT(one.error().message(), HasSubstr("two"));
+  EXPECT_FALSE(fs::exists(folder_ / "one"));
 }
 
 TEST_F(GeometryJob, CalibrationFindsTheMounting) {

@@ -77,7 +77,7 @@ TEST(OptimalAxis, RecoversRadiiWithinAThousandthAndJointsWithinAMetre) {
   const auto& elements = a.horizontal.elements();
   double worst_radius = 0.0, worst_joint = 0.0;
   const std::clock_t begin = std::clock();
-  double joints = 0.0, curvatures = 0.0;
+  double joints = 0.0, curvatures = 0.0, cants = 0.0, gradients = 0.0, gradients_at = 0.0;
   int joint_count = 0, curvature_count = 0;
   constexpr unsigned runs = 6;
   for (unsigned seed = 1; seed <= runs; ++seed) {
@@ -96,11 +96,19 @@ TEST(OptimalAxis, RecoversRadiiWithinAThousandthAndJointsWithinAMetre) {
       curvatures += std::pow(
           (found[i].element.curvature_start - elements[i].element.curvature_start) / fit->sigma[i].curvature, 2);
       ++curvature_count;
-      curvatures += std::pow(
-          (found[i].element.curvature_start - elements[i].element.curvature_start) / fit->sigma[i].curvature, 2);
-      ++curvature_count;
+      const double cant = fit->alignment.cant.at(found[i].distance + 0.5 * found[i].element.length).cant;
+      cants += std::pow((cant - 70.0 * elements[i].element.curvature_start) / fit->sigma[i].cant, 2);
       worst_radius = std::max(worst_radius,
                               std::abs(elements[i].element.curvature_start / found[i].element.curvature_start - 1.0));
+    }
+    ASSERT_EQ(fit->gradient_sigma.size(), 3u);
+    const auto& points = fit->alignment.profile.points();
+    const double gradient[] = {4.2 / 700.0, -2.2 / 800.0, 8.0 / 700.0}, place[] = {0.0, 700.0, 1500.0};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double found_gradient =
+          (points[k + 1].height - points[k].height) / (points[k + 1].distance - points[k].distance);
+      gradients += std::pow((found_gradient - gradient[k]) / fit->gradient_sigma[k].gradient, 2) / 3.0;
+      if (k > 0) gradients_at += std::pow((points[k].distance - place[k]) / fit->gradient_sigma[k].place, 2) / 2.0;
     }
     EXPECT_LT(fit->cant_rms, 1.5e-3);
     EXPECT_LT(fit->height_rms, 1.5e-3);
@@ -111,15 +119,17 @@ TEST(OptimalAxis, RecoversRadiiWithinAThousandthAndJointsWithinAMetre) {
   }
   std::printf(
       "optimal axis, %u runs: radii within %.4f %%, joints within %.3f m, %.2f s CPU each; errors over their "
-      "sigma (RMS): joints %.2f, curvatures %.2f\n",
+      "sigma (RMS): joints %.2f, curvatures %.2f, cants %.2f, gradients %.2f, their places %.2f\n",
       runs, 100.0 * worst_radius, worst_joint, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC / runs,
-      std::sqrt(joints / joint_count), std::sqrt(curvatures / curvature_count));
-  // 60 joints and 18 curvatures, correlated within a run. The sigmas are on the safe side here: these irregularities
-  // have nothing beyond 70 m, which a window of 200 m can't resolve.
-  EXPECT_GT(joints / joint_count, 0.1);
-  EXPECT_LT(joints / joint_count, 2.0);
-  EXPECT_GT(curvatures / curvature_count, 0.1);
-  EXPECT_LT(curvatures / curvature_count, 2.5);
+      std::sqrt(joints / joint_count), std::sqrt(curvatures / curvature_count), std::sqrt(cants / curvature_count),
+      std::sqrt(gradients / runs), std::sqrt(gradients_at / runs));
+  // 60 joints and 18 curvatures, correlated within a run, so that the bounds are wide; 1 is right. The cant of an arc
+  // is a mean over 300 m; these irregularities end at 70 m, and a window of 400 m cannot tell them from longer ones.
+  for (const double square : {joints / joint_count, curvatures / curvature_count, cants / curvature_count,
+                              gradients / runs, gradients_at / runs}) {
+    EXPECT_GT(square, 0.15);
+    EXPECT_LT(square, 2.0);
+  }
   EXPECT_LT(worst_radius, 1e-3);
   EXPECT_LT(worst_joint, 1.0);
 }

@@ -7,6 +7,9 @@
 #include <array>
 #include <random>
 
+#include "versine/geodesy/ellipsoid.hpp"
+#include "versine/track/correlated_errors.hpp"
+
 namespace versine::track {
 namespace {
 
@@ -104,6 +107,28 @@ TEST(JointErrors, ACommonErrorCancelsInAVersine) {
   const std::vector<JointErrors::Term> versine = {{-2, -0.5}, {0, 1.0}, {2, -0.5}}, point = {{0, 1.0}};
   EXPECT_NEAR(joint.variance(versine, rows)[10], 0.0, 1e-6);
   EXPECT_NEAR(joint.variance(point, rows)[10], 1.0, 1e-6);
+}
+
+/// Sigmas alone, and the way over which errors change: a difference over d has 2 (1 - exp(-d / length)) of a variance.
+TEST(JointErrors, OfATrajectoryThatComesWithSigmasOnly) {
+  geodesy::Trajectory t;
+  const double metre = 1.0 / geodesy::wgs84.meridian_radius(0.9);
+  for (int k = 0; k <= 400; ++k) {
+    geodesy::TrajectoryPoint p;
+    p.time = Time{k * 1'000'000'000LL};
+    p.position = {0.9 + 0.5 * k * metre, 0.2, 0.0};
+    p.position_covariance = {9e-6f, 4e-6f, 1e-6f};
+    p.attitude_covariance = {1e-8f, 1e-8f, 1e-8f};
+    t.samples.push_back(p);
+  }
+  const auto chain = correlated_errors(t, 100.0);
+  std::vector<Time> times;
+  for (int k = 0; k < 20; ++k) times.push_back(Time{k * 20'000'000'000LL});  // every 10 m
+  JointErrors joint(chain, times);
+  const std::vector<ErrorRow> rows(20, ErrorRow::Unit(0));
+  const std::vector<JointErrors::Term> point = {{0, 1.0}}, difference = {{0, -1.0}, {2, 1.0}};
+  EXPECT_NEAR(joint.variance(point, rows)[5], 9e-6, 1e-9);
+  EXPECT_NEAR(joint.variance(difference, rows)[5], 2.0 * 9e-6 * (1.0 - std::exp(-0.2)), 2e-8);
 }
 
 }  // namespace

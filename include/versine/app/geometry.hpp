@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "versine/app/geometry_config.hpp"
+#include "versine/app/geometry_coordinates.hpp"
 #include "versine/app/report_config.hpp"
 #include "versine/filter/error_chain.hpp"
+#include "versine/io/fastenings_csv.hpp"
 #include "versine/io/result_folder.hpp"
 #include "versine/io/run_json.hpp"
 #include "versine/track/calibration.hpp"
@@ -24,7 +26,9 @@ struct GeometryResult {
   std::optional<track::Adjustment> slew, lift;
   std::optional<design::Alignment> design;  ///< what deviations refer to, unless it is `axis`
   std::optional<design::OptimalAxis> axis;
-  std::vector<io::RunInput> files;  ///< design, gauge, sleeper, limits
+  std::optional<io::FasteningPlans> fastenings;
+  std::optional<CoordinateTie> tie;  ///< to the project's grid and heights
+  std::vector<io::RunInput> files;   ///< design, gauge, sleeper, limits
 };
 
 /// `crs` is that of the job's output; empty: the design's or UTM.
@@ -39,6 +43,9 @@ struct GeometryResult {
 /// Summary for run.json and `--json`: an object, as text; and for a person.
 [[nodiscard]] std::string geometry_summary_json(const GeometryResult& result);
 [[nodiscard]] std::string geometry_summary_text(const GeometryResult& result);
+
+/// Adds a file to the inputs of a run, with its checksum.
+[[nodiscard]] Expected<void> note_file(const char* role, const InputPath& path, std::vector<io::RunInput>& files);
 
 /// Files of the design, gauge and sleeper of a configuration, read.
 struct GeometryFiles {

@@ -8,10 +8,32 @@
 #include "versine/io/adjustment_csv.hpp"
 #include "versine/track/adjustment.hpp"
 #include "versine/track/compute.hpp"
+#include "versine/track/fastenings.hpp"
 #include "versine/track/limits.hpp"
 
 /// The `[geometry]` table of survey and geometry jobs, and the file of limits.
 namespace versine::app {
+
+/// From the map to the project's own grid and heights.
+struct CoordinatesConfig {
+  enum class Model { none, plane, space };
+  enum class Heights { none, offset, plane, geoid };
+  FileConfig<io::TableFile> points;
+  Model model = Model::none;
+  Heights heights = Heights::none;
+  bool fixed_scale = false;
+  std::string geoid;
+};
+
+/// Fine adjustment of a slab track at its fastenings; ranges of a WJ-8 fastening.
+struct FasteningConfig {
+  enum class Reference { left, right };
+  bool on = false;
+  double spacing = 0.65;  ///< where no sleepers were detected, m
+  Reference reference = Reference::left;
+  track::FasteningOptions lateral;
+  track::FasteningOptions vertical{.lowest = -4e-3, .highest = 26e-3, .difference_limit = 2e-3};
+};
 
 struct GeometryConfig {
   bool present = false;  ///< the job has the table
@@ -21,9 +43,11 @@ struct GeometryConfig {
   InputPath design, gradients, stationing;
   std::string design_name;
   std::string crs;  ///< of the result; must be the design's
+  CoordinatesConfig coordinates;
   double height_offset = 0.0;
   std::string height_datum = "ellipsoidal";
-  bool fit_axis = false;  ///< without design: an optimal axis takes its place
+  double error_correlation = 0.0;  ///< m, of a trajectory that comes without joint errors
+  bool fit_axis = false;           ///< without design: an optimal axis takes its place
   design::OptimalAxisOptions axis;
 
   GaugeFileConfig gauge;
@@ -39,6 +63,7 @@ struct GeometryConfig {
   bool adjust = false;
   track::AdjustmentOptions slew, lift{.smallest = 0.0, .largest = 0.06};
   io::AdjustmentTable table;
+  FasteningConfig fastenings;
 
   bool csv = true, gpkg = true, xlsx = true, dxf = false;
   double gis_interval = 1.0, xlsx_interval = 5.0;  ///< m

@@ -42,7 +42,7 @@ struct SurveyConfig {
 
   /// Everything the estimator wants to know; the keys of the job write straight into it.
   fusion::AidedInsOptions estimator;
-  std::vector<double> initial_position;  ///< deg, deg, m
+  std::vector<double> initial_position;     ///< deg, deg, m
   fusion::LandmarkOptions landmark_method;  ///< what `method = "landmark"` wants to know besides
 
   GeometryConfig geometry;  ///< track geometry, when the job has the table

@@ -39,7 +39,8 @@ struct ViewAddress {
 
 /// Serves one open result on 127.0.0.1, and nowhere else. A request needs the server's own Host header, the token in
 /// X-Versine-Token (the page and its assets, which hold no data, do not), the server's own Origin where one is sent,
-/// and GET or HEAD; POST is allowed for constraints and marks alone. Paths are looked up in an exact map, never on disk.
+/// and GET or HEAD; POST is allowed for constraints and marks alone. Paths are looked up in an exact map, never on
+/// disk.
 class ViewServer {
  public:
   [[nodiscard]] static Expected<ViewServer> start(ViewContent content, ViewAddress address = {});

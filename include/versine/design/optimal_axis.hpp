@@ -41,11 +41,19 @@ struct ElementSigma {
   bool kind_certain = false;
 };
 
+/// Standard deviations of one gradient of the profile and of the curve at its start.
+struct GradientSigma {
+  double gradient = 0.0;  ///< ratio
+  double place = 0.0;     ///< of the intersection at its start, m; 0 at the start of the profile
+  double curve = 0.0;     ///< of the length of the parabola there, m
+};
+
 /// An alignment that describes the measured track best.
 struct OptimalAxis {
   Alignment alignment;
-  std::vector<ElementSigma> sigma;  ///< one per horizontal element
-  Eigen::MatrixXd covariance;       ///< of the unknowns: offset and heading at the start, then lengths and curvatures
+  std::vector<ElementSigma> sigma;            ///< one per horizontal element
+  std::vector<GradientSigma> gradient_sigma;  ///< one per gradient; empty without heights
+  Eigen::MatrixXd covariance;  ///< of the unknowns: offset and heading at the start, then lengths and curvatures
   std::vector<std::string> unknowns;
   double offset_rms = 0.0;   ///< of the samples against the axis, m
   double heading_rms = 0.0;  ///< rad

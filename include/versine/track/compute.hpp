@@ -7,7 +7,7 @@
 #include "versine/core/error.hpp"
 #include "versine/core/progress.hpp"
 #include "versine/filter/error_chain.hpp"
-#include "versine/geodesy/projection.hpp"
+#include "versine/geodesy/project_map.hpp"
 #include "versine/geodesy/trajectory.hpp"
 #include "versine/sensors/measurements.hpp"
 #include "versine/track/geometry.hpp"
@@ -35,11 +35,17 @@ struct GeometryInput {
   std::vector<MileageMark> marks;
   const design::Alignment* design = nullptr;      ///< mileage, deviations and cant refer to it
   std::optional<geodesy::Projection> projection;  ///< of coordinates; default: the UTM zone of the start
-  /// Height above the datum minus ellipsoidal height, m (geoid or datum offset), and its name.
+  std::optional<geodesy::Similarity> similarity;  ///< from there to the project's own grid, which the design is in
+  geodesy::HeightDatum heights;                   ///< of the project, against the trajectory's
+  /// Added to all heights, m, and the name of their datum.
   double height_offset = 0.0;
   std::string height_datum = "ellipsoidal";
   Trolley trolley;
 };
+
+/// The map that the result is in: what the input names, else the design's, else the UTM zone of the start. Fails when
+/// there is a design of unknown coordinate system.
+[[nodiscard]] Expected<geodesy::ProjectMap> map_of(const GeometryInput& input);
 
 /// A versine measured at `offset` from the chord's start; the mid-chord when offset = length / 2.
 struct Chord {

@@ -64,6 +64,7 @@ struct Geometry {
   std::vector<Sleeper> sleepers;
   std::vector<PostedMileage> posted;  ///< empty: posted and continuous mileage are the same
   std::string crs;                    ///< of easting and northing: PROJ definition
+  bool own_grid = false;              ///< coordinates are in a grid of the project's own, tied to `crs` by a similarity
   std::string height_datum;           ///< of heights, in words
   std::string origin;                 ///< what made the trajectory
   /// Sign, side, filter and rail-point conventions, for the head of every export.

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "versine/geodesy/local_frame.hpp"
-#include "versine/geodesy/projection.hpp"
+#include "versine/geodesy/project_map.hpp"
 
 namespace versine::track {
 
@@ -13,7 +13,7 @@ class LocalMap {
  public:
   static constexpr double reach = 250.0;  ///< m
 
-  LocalMap(const geodesy::Geodetic& origin, const geodesy::Projection& projection);
+  LocalMap(const geodesy::Geodetic& origin, const geodesy::ProjectMap& projection);
 
   [[nodiscard]] const geodesy::LocalFrame& frame() const { return frame_; }
   /// Easting, northing, ellipsoidal height.

@@ -22,7 +22,7 @@ struct RunMileage {
 /// axis, or of the odometers, laid between known marks (Chen 2018 section 4.4). `spacing`: epochs closer than that to
 /// the last one used are left out.
 [[nodiscard]] Expected<RunMileage> synchronise_mileage(const GeometryInput& input, const GeometryOptions& options,
-                                                       const geodesy::Projection& projection, double spacing);
+                                                       const geodesy::ProjectMap& projection, double spacing);
 
 /// Middle of the track under the trolley's beam, v-frame, for the nominal gauge.
 [[nodiscard]] Eigen::Vector3d beam_centre(const Trolley& trolley, double nominal_gauge);

@@ -33,6 +33,6 @@ struct RailGrid {
 /// Rails from the trolley's poses: the reference rail is the mean of what wheels A1 and A2 traced (so that errors of
 /// the mounting's heading and pitch cancel), the other rail what A3 traced. Gauge: Chen 2018 eq. 1, median-filtered.
 [[nodiscard]] RailGrid place_rails(const GeometryInput& input, const GeometryOptions& options,
-                                   const geodesy::Projection& projection, const RunMileage& run, Progress& progress);
+                                   const geodesy::ProjectMap& projection, const RunMileage& run, Progress& progress);
 
 }  // namespace versine::track
