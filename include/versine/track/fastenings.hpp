@@ -19,7 +19,7 @@ struct FasteningOptions {
   std::vector<ChordCheck> checks = {{"30m", 30.0, 15.0, 5.0}};
   std::vector<double> check_limits = {2e-3};  ///< m, one for each check
   double window = 60.0;                       ///< solved at once, m; half of it is kept, then the next
-  double seconds = 10.0;                      ///< of search in one window at most; the best found is kept
+  double seconds = 2.0;                       ///< of search in one window at most; the best found is kept
 };
 
 /// Movements of one rail in whole steps, a fastening at a time.
