@@ -59,6 +59,33 @@ bool odometer_agrees(const StandstillInput& in, Time from, Time to, double limit
   return std::abs(before(to) - before(from)) <= limit;
 }
 
+/// Where the fixes on either side of a time put the antenna, as n-frame metres from `origin`, and their sigma.
+std::optional<std::pair<Eigen::Vector2d, double>> place_at(const Series<sensors::GnssSample>& gnss, Time t,
+                                                           const geodesy::Geodetic& origin) {
+  constexpr double longest = 5.0;  // s between fixes that still tell a place in between
+  const std::size_t after = gnss.lower_bound(t);
+  if (after == 0 || after == gnss.size()) return std::nullopt;
+  const auto &a = gnss[after - 1], &b = gnss[after];
+  const double span = (b.time - a.time).seconds(), share = (t - a.time).seconds() / span;
+  if (!(span <= longest)) return std::nullopt;
+  const auto metres = [&](const geodesy::Geodetic& g) {
+    constexpr double radius = 6371000.0;  // a standstill's limits need no ellipsoid
+    return Eigen::Vector2d(radius * (g.latitude - origin.latitude),
+                           radius * std::cos(origin.latitude) * (g.longitude - origin.longitude));
+  };
+  return std::pair{Eigen::Vector2d((1.0 - share) * metres(a.position) + share * metres(b.position)),
+                   std::max(a.sigma_ned.head<2>().norm(), b.sigma_ned.head<2>().norm())};
+}
+
+/// Positions that wander off tell a steady ride from a standstill where nothing else does.
+bool positions_agree(const StandstillInput& in, const StandstillOptions& o, Time from, Time to) {
+  if (in.gnss == nullptr || in.gnss->empty()) return true;
+  const geodesy::Geodetic origin = in.gnss->front().position;
+  const auto a = place_at(*in.gnss, from, origin), b = place_at(*in.gnss, to, origin);
+  if (!a || !b) return true;
+  return (b->first - a->first).norm() <= o.gnss_speed * o.window + 3.0 * std::hypot(a->second, b->second);
+}
+
 bool aids_agree(const StandstillInput& in, const StandstillOptions& o, const Window& w) {
   if (!odometer_agrees(in, w.from, w.to, o.odometer_step)) return false;
   if (in.speed != nullptr) {
@@ -66,6 +93,7 @@ bool aids_agree(const StandstillInput& in, const StandstillOptions& o, const Win
       if (!(std::abs(s.speed) <= o.gnss_speed)) return false;
     }
   }
+  if (!positions_agree(in, o, w.from, w.to)) return false;
   if (in.gnss != nullptr) {
     for (const auto& s : in.gnss->between(w.from, w.to)) {
       if (s.v_ned && !(s.v_ned->norm() <= o.gnss_speed + 3.0 * s.sigma_v_ned.norm())) return false;
@@ -109,7 +137,8 @@ std::vector<Interval> find_standstills(const StandstillInput& input, const Stand
     if (!quiet(w) || !((w.rate_mean - bias).cwiseAbs().maxCoeff() <= o.rate_mean) || !aids_agree(input, o, w)) {
       close();
     } else if (open && (w.from - open->to).seconds() < 0.5 * o.window &&
-               odometer_agrees(input, open->from, w.to, 2.0 * o.odometer_step)) {
+               odometer_agrees(input, open->from, w.to, 2.0 * o.odometer_step) &&
+               positions_agree(input, o, open->from, w.to)) {
       open->to = w.to;
     } else {
       close();

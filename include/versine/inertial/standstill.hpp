@@ -23,7 +23,9 @@ struct StandstillOptions {
   double rate_spread = 0.003;         ///< rad/s; standard deviation of the angular rate in a window, each axis
   double rate_mean = 0.003;           ///< rad/s; mean angular rate beyond the gyro's bias
   double odometer_step = 0.002;       ///< m; the odometer may change by this much in a window; by twice in a standstill
-  double gnss_speed = 0.3;            ///< m/s; where GNSS tells a higher speed, the vehicle does not stand
+  /// m/s; where GNSS tells a higher speed the vehicle does not stand, nor where its positions move by more than a
+  /// window's way at that speed and three of their sigmas.
+  double gnss_speed = 0.3;
 };
 
 /// What may be asked whether the vehicle stands; only the IMU must be there. With nothing but an IMU a smooth steady
