@@ -4,6 +4,11 @@ JOBS ?= $(shell nproc)
 BUILD := build/release
 VERSINE := $(BUILD)/apps/versine/versine
 
+# The folder of real recordings; jobs would take a relative one from their own folder.
+VERSINE_DATA ?= ../shared/data
+override VERSINE_DATA := $(abspath $(VERSINE_DATA))
+export VERSINE_DATA
+
 .PHONY: all setup build test demo screenshots report-images accuracy figures benchmarks format clean accuracy-positioning accuracy-georef accuracy-track
 all: build
 
@@ -35,7 +40,6 @@ demo: build
 	@echo "The report: out/demo/result/report.html (opens by double click), report.pdf"
 
 # Pictures of docs/viewer.md: the demo and 10 km of line with faults, in a real browser.
-VERSINE_DATA ?= ../shared/data
 BRUSSELS := $(if $(wildcard $(VERSINE_DATA)/brussels-airport),out/brussels)
 # So poor that a path is in doubt.
 POOR_GNSS := --set gnss.sigma_horizontal_m=4 --set gnss.correlated_horizontal_m=6 --set gnss.correlation_time_s=300
@@ -44,14 +48,14 @@ screenshots: demo
 	$(VERSINE) survey out/line/recording/survey.toml -o out/line/result $(LINE_LIMITS)
 	rm -rf out/harbour && $(VERSINE) simulate examples/scenarios/harbour-day.toml -o out/harbour/recording $(POOR_GNSS)
 	$(VERSINE) georef out/harbour/recording/georef.toml -o out/harbour/result
-	$(if $(BRUSSELS),VERSINE_DATA=$(VERSINE_DATA) $(VERSINE) georef examples/georef/brussels.toml -o $(BRUSSELS))
+	$(if $(BRUSSELS),$(VERSINE) georef examples/georef/brussels.toml -o $(BRUSSELS))
 	mkdir -p docs/images
 	VERSINE=$(VERSINE) VERSINE_SOURCE_DIR=. VERSINE_PAGE=$(abspath $(BUILD))/viewer/page \
 	  node viewer/tests/screenshots.mjs docs/images out/demo/result out/line/result out/harbour/result $(BRUSSELS)
 
 # Accuracy on the real recordings (docs/accuracy.md); VERSINE_DATA names their folder.
 accuracy: build
-	VERSINE_DATA=$${VERSINE_DATA:-../shared/data} benchmarks/accuracy_real.py $(VERSINE)
+	benchmarks/accuracy_real.py $(VERSINE)
 
 # The pictures of the documentation.
 figures: benchmarks
@@ -69,7 +73,7 @@ accuracy-positioning: setup
 	cmake --build $(BUILD) -j $(JOBS) --target versine versine_station_accuracy versine_positioning_real
 	$(BUILD)/benchmarks/versine_station_accuracy benchmarks/scenarios/station-tunnel.toml
 	$(BUILD)/benchmarks/versine_station_accuracy benchmarks/scenarios/station-line.toml
-	$(BUILD)/benchmarks/versine_positioning_real $${VERSINE_DATA:-../shared/data}
+	$(BUILD)/benchmarks/versine_positioning_real $(VERSINE_DATA)
 	benchmarks/rinex_hour.py out/hour
 	time -p $(VERSINE) gnss out/hour/job.toml -o out/hour/result
 	benchmarks/rinex_hour.py --compare out/hour out/hour/result
@@ -83,8 +87,8 @@ report-images: build
 accuracy-georef: build
 	cmake --preset release -DVERSINE_BENCHMARKS=ON
 	cmake --build $(BUILD) -j $(JOBS) --target versine_georef_brussels versine_georef_accuracy
-	$(BUILD)/benchmarks/versine_georef_brussels $${VERSINE_DATA:-../shared/data}
-	$(BUILD)/benchmarks/versine_georef_accuracy --data $${VERSINE_DATA:-../shared/data} --svg docs/images/georef-reliability.svg
+	$(BUILD)/benchmarks/versine_georef_brussels $(VERSINE_DATA)
+	$(BUILD)/benchmarks/versine_georef_accuracy --data $(VERSINE_DATA) --svg docs/images/georef-reliability.svg
 
 # Track geometry of simulated surveys against the true rails, 20 seeds each (docs/track-geometry.md).
 accuracy-track: setup

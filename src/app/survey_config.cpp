@@ -196,7 +196,9 @@ void describe_filter(ConfigVisitor& v, fusion::AidedInsOptions& e) {
            .min = 1});
   v.value(
       "doubt_after_s", e.doubt_after,
-      seconds("With positions, only when the rejections have lasted this long: wrong ambiguities last for seconds."));
+      seconds(
+          "With positions, only when the rejections have lasted this long: wrong ambiguities last for seconds. 0: as "
+          "long as the accelerometers' bias alone keeps the position within 0.3 m."));
   v.value("gravity_walk_mgalpsqrtkm", e.gravity_walk,
           {.doc = "Change of gravity against its normal value, in size and direction, per root of the distance.",
            .unit = "mGal/sqrt(km)",

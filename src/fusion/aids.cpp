@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 namespace versine::fusion::detail {
@@ -41,7 +42,10 @@ Judge::Verdict Judge::judge(const char* name, Time time, filter::Linearized& l,
   const bool mounting = std::string_view(name) == "landmark attitude";
   if (sensor.in_a_row == 0) sensor.first_in_a_row = time;
   // A segment that has only begun has no better knowledge than the sensor that contradicts it.
-  const double patience = std::min(options_.doubt_after, (sensor.first_in_a_row - segment_).seconds());
+  const double trusted = options_.doubt_after > 0.0
+                             ? options_.doubt_after
+                             : std::clamp(std::sqrt(2.0 * 0.3 / options_.imu_errors.accelerometer.bias), 1.0, 60.0);
+  const double patience = std::min(trusted, (sensor.first_in_a_row - segment_).seconds());
   if (!good && !mounting && std::isfinite(nis) && options_.most_rejections > 0 &&
       sensor.in_a_row + 1 >= static_cast<std::size_t>(options_.most_rejections) &&
       (often || (time - sensor.first_in_a_row).seconds() >= patience)) {

@@ -110,9 +110,12 @@ struct AidedInsOptions {
   // --- gates and weights
   double gate_probability = 1e-5;  ///< chance that a good measurement is rejected
   RobustWeight robust = RobustWeight::none;
-  int most_rejections = 10;   ///< after so many in a row of one sensor the filter, not the sensor, is doubted,
-  double doubt_after = 60.0;  ///< s; of positions, if they have lasted this long, or as long as the segment before
-  int monitor_length = 30;    ///< innovations of one sensor whose mean is watched for slow faults; 0: off
+  int most_rejections = 10;  ///< after so many in a row of one sensor the filter, not the sensor, is doubted,
+  /// s; of positions, if the rejections have lasted this long, or as long as the segment before. 0: as long as the
+  /// accelerometers' bias alone keeps the position within 0.3 m, a small wrong ambiguity: 50 s of a ring-laser IMU, 2 s
+  /// of a consumer one.
+  double doubt_after = 0.0;
+  int monitor_length = 30;  ///< innovations of one sensor whose mean is watched for slow faults; 0: off
 
   // --- numbers
   /// m/s^2 per root of the metres travelled; change of gravity against its normal value, in size and direction. It acts
