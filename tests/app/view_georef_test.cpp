@@ -82,7 +82,8 @@ class GeorefResult : public testing::Test {
     return open_georef_view(folder, R"({"format":"versine run 1","command":"georef"})", {});
   }
 
-  fs::path folder = fs::temp_directory_path() / "versine-view-georef";
+  fs::path folder = fs::temp_directory_path() / (std::string("versine-view-georef-") +
+                                                 testing::UnitTest::GetInstance()->current_test_info()->name());
   json index;
 };
 

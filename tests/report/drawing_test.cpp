@@ -102,7 +102,9 @@ TEST(Strip, NumbersHaveNoNegativeZero) {
 
 class Pdf : public ::testing::Test {
  protected:
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() / "versine_report_pdf_test";
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() /
+      (std::string("versine-report-pdf-") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
   void SetUp() override { std::filesystem::create_directories(folder_); }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 };
