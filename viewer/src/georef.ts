@@ -57,15 +57,16 @@ export class GeorefScreen implements Screen {
   }
 
   async start(): Promise<void> {
+    const drawn = this.map.load();
     await this.review.load();
     this.table.show();
     this.layout();
     this.keys();
-    const drawn = this.map.load();
     const first = this.georef.journeys[0];
     if (first) await this.open(first);
+    else this.map.fit();
     await drawn;
-    if (!first) this.map.fit();
+    await this.map.painted();
     this.resized.observe(this.centre);
     performance.mark('versine-ready');
     document.documentElement.dataset.ready = 'true';

@@ -6,11 +6,11 @@ import OlView from 'ol/View';
 import { ScaleLine } from 'ol/control';
 import { defaults as interactions } from 'ol/interaction/defaults';
 import LineString from 'ol/geom/LineString';
-import MultiLineString from 'ol/geom/MultiLineString';
 import MultiPoint from 'ol/geom/MultiPoint';
 import Point from 'ol/geom/Point';
 import Polygon from 'ol/geom/Polygon';
 import VectorLayer from 'ol/layer/Vector';
+import RenderFeature from 'ol/render/Feature';
 import VectorSource from 'ol/source/Vector';
 import { Circle, Fill, RegularShape, Stroke, Style, Text } from 'ol/style';
 import { getMap } from './api';
@@ -22,6 +22,23 @@ import { css } from './theme';
 
 const detail = [25, 120, Infinity]; // m per pixel up to which each level of the network is drawn
 const group = 150; // lines of a coarse level in one feature: fewer, larger features draw faster
+
+/** Lines of the network, `size` in a feature. Features that only draw, on the numbers as they came, take a third of the
+ * time of features that could be changed. */
+function network(points: Points, size: number, names: string[] = []): RenderFeature[] {
+  const places = new Float64Array(points.places.length);
+  for (let i = 0; i < places.length; ++i) places[i] = points.origin[i % 2] + points.places[i];
+  const out: RenderFeature[] = [];
+  const count = points.start.length - 1;
+  for (let g = 0; g < count; g += size) {
+    const [first, last] = [g, Math.min(g + size, count)];
+    const base = 2 * points.start[first];
+    const flat = places.subarray(base, 2 * points.start[last]) as unknown as number[];
+    const ends = Array.from({ length: last - first }, (_, k) => 2 * points.start[first + k + 1] - base);
+    out.push(new RenderFeature(size > 1 ? 'MultiLineString' : 'LineString', flat, ends, 2, { track: names[g] }, undefined));
+  }
+  return out;
+}
 
 /** Coordinates of each group. */
 function lines(points: Points): number[][][] {
@@ -49,7 +66,7 @@ function spans(tracks: { from: number; to: number }[]): { from: number; to: numb
 export class GeorefMap {
   readonly element = element('section', { class: 'georef-map', 'aria-label': 'Map' });
   private readonly map: OlMap;
-  private readonly levels = detail.map((most, i) => new VectorLayer({ source: new VectorSource(), maxResolution: most, minResolution: i === 0 ? 0 : detail[i - 1] }));
+  private readonly levels = detail.map((most, i) => new VectorLayer({ source: new VectorSource<RenderFeature>(), maxResolution: most, minResolution: i === 0 ? 0 : detail[i - 1] }));
   private readonly ribbons = new VectorSource();
   private readonly fixes = new VectorSource();
   private readonly pointer = new VectorSource();
@@ -79,24 +96,27 @@ export class GeorefMap {
     this.style();
   }
 
-  /** The whole network; its coarser levels come when the finest one is there. */
+  /** The whole network, the level that is needed first before the others. */
   async load(): Promise<void> {
-    const finest = lines(await getMap('0'));
-    this.levels[0].getSource()!.addFeatures(finest.map((line, i) => {
-      const feature = new Feature(new LineString(line));
-      feature.set('track', this.georef.network.names[i]);
-      return feature;
-    }));
-    void this.loadCoarse();
+    const first = this.georef.journeys.length > 0 ? 0 : 2;
+    await this.loadLevel(first);
+    void (async () => {
+      await this.painted();
+      for (const level of [0, 1, 2]) if (level !== first) await this.loadLevel(level);
+    })();
   }
 
-  private async loadCoarse(): Promise<void> {
-    for (const level of [1, 2]) {
-      const coarse = lines(await getMap(String(level)));
-      const features: Feature[] = [];
-      for (let i = 0; i < coarse.length; i += group) features.push(new Feature(new MultiLineString(coarse.slice(i, i + group))));
-      this.levels[level].getSource()!.addFeatures(features);
-    }
+  private async loadLevel(level: number): Promise<void> {
+    const points = await getMap(String(level));
+    this.levels[level].getSource()!.addFeatures(level === 0 ? network(points, 1, this.georef.network.names) : network(points, group));
+  }
+
+  /** When what is there now has been drawn. */
+  async painted(): Promise<void> {
+    await new Promise<void>((done) => {
+      this.map.once('rendercomplete', () => done());
+      this.map.render();
+    });
   }
 
   fit(): void {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// How fast the viewer is on 400,001 points: node benchmark.mjs [POINTS], with the environment of support.mjs.
-import { mkdtempSync, readdirSync, readFileSync, rmSync, statSync } from 'node:fs';
+// How fast the viewer is on 400,001 points, and with VERSINE_DATA on the Dutch network: node benchmark.mjs [POINTS], with
+// the environment of support.mjs.
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync } from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
 import { columns, writeResult } from './fixture.mjs';
+import { writeGeorefResult } from './georef_fixture.mjs';
 import { browse, loaded, open, serve } from './support.mjs';
 
 const count = Number(process.argv[2] ?? 400001);
@@ -94,5 +97,51 @@ await frames('pan', { deltaY: 40, shiftKey: true });
 await frames('zoom', { deltaY: -12 });
 if (page.faults.length > 0) console.error(page.faults);
 server.stop();
+
+/** The network of a country, opened at a journey, then seen as a whole. Kilometres are kept, the datum is not. */
+async function network(file) {
+  const { features } = JSON.parse(execFileSync('zstd', ['-dc', file], { maxBuffer: 1 << 28 }));
+  const lines = features.filter((f) => f.geometry?.type === 'LineString').map((f) => f.geometry.coordinates);
+  const more = lines.map((line) => line.map(([e, n]) => [5.387 + (e - 155000) / 68400, 52.155 + (n - 463000) / 111200]));
+  writeGeorefResult(path.join(folder, 'network'), { more });
+  const times = { serving: [], painted: [] };
+  for (let round = 0; round < 5; ++round) {
+    const start = performance.now();
+    const server = await serve(path.join(folder, 'network'));
+    times.serving.push(performance.now() - start);
+    const page = await open(browser, server);
+    times.painted.push(await page.evaluate(() => performance.getEntriesByName('versine-ready')[0].startTime));
+    await page.context().close();
+    server.stop();
+  }
+  console.log(`network of ${lines.length} lines, ${lines.reduce((n, l) => n + l.length, 0)} vertices`);
+  for (const name of ['serving', 'painted']) console.log(`${name}: median ${median(times[name]).toFixed(0)} ms of ${times[name].map((t) => t.toFixed(0)).join(', ')}`);
+  const server = await serve(path.join(folder, 'network'));
+  page = await open(browser, server);
+  await page.waitForTimeout(1500);
+  const frames = await page.evaluate(
+    () =>
+      new Promise((resolve) => {
+        const target = document.querySelector('.georef-map canvas');
+        const box = target.getBoundingClientRect();
+        const times = [];
+        let last = 0;
+        const frame = (now) => {
+          if (last > 0) times.push(now - last);
+          last = now;
+          if (times.length > 150) return resolve(times);
+          // Out to the whole country and in again.
+          target.dispatchEvent(new WheelEvent('wheel', { bubbles: true, cancelable: true, clientX: box.left + box.width / 2, clientY: box.top + box.height / 2, deltaY: times.length < 75 ? 60 : -60 }));
+          requestAnimationFrame(frame);
+        };
+        requestAnimationFrame(frame);
+      }),
+  );
+  const sorted = frames.sort((x, y) => x - y);
+  console.log(`map zoomed out to the country and in again: median ${median(sorted).toFixed(1)} ms a frame, 95 % below ${sorted[Math.floor(0.95 * sorted.length)].toFixed(1)} ms`);
+  server.stop();
+}
+const data = path.join(process.env.VERSINE_DATA ?? '', 'dutch-network', 'netherlands.geojson.zst');
+if (process.env.VERSINE_DATA && existsSync(data)) await network(data);
 await browser.close();
 rmSync(folder, { recursive: true });
