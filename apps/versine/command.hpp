@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -52,5 +53,9 @@ void add_job_options(CLI::App& command, JobOptions& options);
 
 /// Prints an error on standard error and returns the exit code for bad input.
 int report(const Error& error);
+
+/// Prints what a job came to, as text with the place of its result or as JSON, and returns the exit code.
+int print_result(const JobOptions& options, const std::string& text, const std::string& json,
+                 const std::filesystem::path& folder, bool acceptable = true);
 
 }  // namespace versine::cli

@@ -24,6 +24,17 @@ int report(const Error& error) {
   return bad_input;
 }
 
+int print_result(const JobOptions& options, const std::string& text, const std::string& json,
+                 const std::filesystem::path& folder, bool acceptable) {
+  if (options.json) {
+    std::printf("%s\n", json.c_str());
+  } else if (!options.quiet) {
+    std::printf("%s%sResult: %s\n", text.c_str(), text.ends_with("\n") || text.empty() ? "" : "\n",
+                folder.string().c_str());
+  }
+  return acceptable ? good : unacceptable;
+}
+
 }  // namespace versine::cli
 
 int main(int argc, char** argv) {

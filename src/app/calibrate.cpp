@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "versine/app/geometry.hpp"
-#include "versine/app/version.hpp"
 #include "versine/core/units.hpp"
 #include "versine/io/read_recording.hpp"
 #include "versine/sensors/series_check.hpp"
@@ -153,25 +151,16 @@ Expected<GeometryRun> run_calibrate(const std::filesystem::path& job, std::span<
       !done) {
     return tl::unexpected(done.error());
   }
-  std::filesystem::path target = output;
-  if (target.empty()) {
-    target = config.folder.empty() ? std::filesystem::path(job).replace_extension(".result")
-                                   : job.parent_path() / config.folder;
-  }
-  auto folder = io::ResultFolder::create(target);
+  auto folder = io::ResultFolder::create(result_target(job, output, config.folder));
   if (!folder) return tl::unexpected(folder.error());
-  io::Run run;
-  run.started_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  io::Run run = begin_run("calibrate");
   for (const auto& pass : config.passes) {
-    auto file =
-        io::describe_input("trajectory of " + pass.name, pass.trajectory.file.written, pass.trajectory.file.path);
-    if (!file) return tl::unexpected(file.error());
-    run.inputs.push_back(std::move(*file));
+    if (auto done = note_file("trajectory of " + pass.name, pass.trajectory.file, run.inputs); !done) {
+      return tl::unexpected(done.error());
+    }
   }
   const auto calibration = compute_calibration(config, progress);
   if (!calibration) return tl::unexpected(calibration.error());
-  run.command = "calibrate";
-  run.version = version();
   run.settings_json = config_json([&](ConfigVisitor& v) { describe(v, config); });
   run.results_json = to_json(*calibration).dump();
   if (auto done = io::write_run_json(folder->path("run.json"), run); !done) return tl::unexpected(done.error());

@@ -32,13 +32,6 @@ Expected<void> adjust(const GeometryConfig& config, GeometryResult& r) {
 
 }  // namespace
 
-Expected<void> note_file(const char* role, const InputPath& path, std::vector<io::RunInput>& files) {
-  auto file = io::describe_input(role, path.written, path.path);
-  if (!file) return tl::unexpected(file.error());
-  files.push_back(std::move(*file));
-  return {};
-}
-
 Expected<GeometryFiles> read_geometry_files(const GeometryConfig& c) {
   GeometryFiles out;
   if (!c.design.empty()) {

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/chrono.h>
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
 #include "versine/app/geometry.hpp"
 #include "versine/app/progress_file.hpp"
 #include "versine/app/report.hpp"
-#include "versine/app/version.hpp"
 #include "versine/io/read_recording.hpp"
 
 namespace versine::app {
@@ -45,15 +41,9 @@ Expected<GeometryRun> run_geometry(const std::filesystem::path& job, std::span<c
                  .expected = "a trajectory",
                  .advice = "name trajectory.h5 of a survey's result, or a CSV of other software"});
   }
-  std::filesystem::path target = output;
-  if (target.empty()) {
-    target = config.folder.empty() ? std::filesystem::path(job).replace_extension(".result")
-                                   : job.parent_path() / config.folder;
-  }
-  auto folder = io::ResultFolder::create(target);
+  auto folder = io::ResultFolder::create(result_target(job, output, config.folder));
   if (!folder) return tl::unexpected(folder.error());
-  io::Run run;
-  run.started_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  io::Run run = begin_run("geometry");
   if (auto done = note_file("trajectory", config.trajectory.file, run.inputs); !done)
     return tl::unexpected(done.error());
   auto trajectory = io::read_trajectory(config.trajectory.description);
@@ -72,8 +62,6 @@ Expected<GeometryRun> run_geometry(const std::filesystem::path& job, std::span<c
   visible.finish();
   if (auto done = write_track_geometry(config.geometry, *result, *folder, progress); !done)
     return tl::unexpected(done.error());
-  run.command = "geometry";
-  run.version = version();
   run.time_scale = trajectory->series.scale;
   run.inputs.insert(run.inputs.end(), result->files.begin(), result->files.end());
   run.settings_json = config_json([&](ConfigVisitor& v) { describe(v, config); });

@@ -10,8 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "versine/app/job_run.hpp"
 #include "versine/app/report.hpp"
-#include "versine/app/version.hpp"
 #include "versine/core/calendar.hpp"
 #include "versine/io/georef_result.hpp"
 #include "versine/io/result_folder.hpp"
@@ -192,14 +192,9 @@ Expected<GeorefRun> run_georef(const fs::path& job, std::span<const std::string>
   if (!config) return tl::unexpected(config.error());
   if (auto done = check_report(config->report); !done) return tl::unexpected(done.error());
   config->run_online = online;
-  auto folder =
-      io::ResultFolder::create(output.empty() ? job.parent_path() / (job.stem().string() + ".result") : output);
+  auto folder = io::ResultFolder::create(result_target(job, output));
   if (!folder) return tl::unexpected(folder.error());
-  io::Run run{.command = "georef", .version = version()};
-  run.started_utc =
-      to_text({std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::system_clock::now().time_since_epoch())
-                   .count()},
-              TimeScale::utc);
+  io::Run run = begin_run("georef");
   auto last = Clock::now();
   const auto stage = [&](const char* name) {
     const auto now = Clock::now();

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "versine/app/constraints.hpp"
 #include "versine/app/georef.hpp"
 #include "versine/core/units.hpp"
 
@@ -22,24 +23,6 @@ void describe_monitoring(ConfigVisitor& t, MonitoringConfig& m) {
           {.doc = "Exact positions as often; 0: none.", .unit = "1/s", .min = 0.0});
 }
 
-void describe_constraints(ConfigVisitor& v, std::vector<georef::Constraint>& constraints) {
-  v.tables<georef::Constraint>(
-      "constraint", "What a reviewer decided about a stretch of time; also in a file of its own.", constraints,
-      [](ConfigVisitor& t, georef::Constraint& k) {
-        t.value("recording", k.recording, {.doc = "Name of the recording; none: every recording."});
-        double from = k.from.seconds(), to = k.to.seconds();
-        t.value("from_s", from, {.doc = "Beginning, in the recording's time.", .unit = "s", .required = true});
-        t.value("to_s", to, {.doc = "End.", .unit = "s", .required = true});
-        k.from = Time::from_seconds(from), k.to = Time::from_seconds(to);
-        t.value("tracks", k.tracks,
-                {.doc = "The vehicle was on these only: tracks, or lines of the map.",
-                 .required = true,
-                 .example = "[\"A1\", \"X1ab\"]"});
-        t.value("excluded", k.excluded, {.doc = "It was on none of them."});
-        t.value("comment", k.comment, {.doc = "For people."});
-      });
-}
-
 void describe(ConfigVisitor& v, RecordingConfig& r) {
   v.value("name", r.name, {.doc = "In results; none: the GNSS file as written."});
   v.table("gnss", "Positions, and speed where the file has it.", [&](ConfigVisitor& t) { describe(t, r.gnss); });
@@ -53,12 +36,9 @@ void describe(ConfigVisitor& v, RecordingConfig& r) {
 
 Expected<void> load_constraints(GeorefConfig& c) {
   if (c.constraints_file.empty()) return {};
-  std::vector<georef::Constraint> constraints;
-  if (auto read = read_config(c.constraints_file.path, [&](ConfigVisitor& v) { describe_constraints(v, constraints); });
-      !read) {
-    return read;
-  }
-  c.constraints.insert(c.constraints.end(), constraints.begin(), constraints.end());
+  const auto constraints = read_constraints(c.constraints_file.path);
+  if (!constraints) return tl::unexpected(constraints.error());
+  c.constraints.insert(c.constraints.end(), constraints->begin(), constraints->end());
   return {};
 }
 
@@ -156,7 +136,7 @@ void describe(ConfigVisitor& v, GeorefConfig& c) {
     t.value("jacobian_step_m", o.jacobian_step,
             {.doc = "Step of the central difference.", .unit = "m", .positive = true});
   });
-  describe_constraints(v, c.constraints);
+  describe(v, c.constraints);
   v.tables<MonitoringConfig>("monitoring", "Monitoring channels to be put on the track.", c.monitoring,
                              describe_monitoring);
   v.table("online", "Replay through the online filter (versine georef --online).", [&](ConfigVisitor& t) {

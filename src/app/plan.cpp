@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "versine/app/plan.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <chrono>
-#include <ctime>
 
+#include "versine/app/job_run.hpp"
 #include "versine/app/report.hpp"
-#include "versine/app/version.hpp"
 #include "versine/io/result_folder.hpp"
 #include "versine/io/run_json.hpp"
 
@@ -96,16 +94,15 @@ Expected<PlanRun> run_plan(const std::filesystem::path& job, std::span<const std
   if (!config) return tl::unexpected(config.error());
   if (auto done = check_report(config->report); !done) return tl::unexpected(done.error());
   if (monte_carlo >= 0) config->monte_carlo.runs = monte_carlo;
-  auto folder =
-      io::ResultFolder::create(output.empty() ? std::filesystem::path(job).replace_extension(".result") : output);
+  io::Run run = begin_run("plan");
+  auto folder = io::ResultFolder::create(result_target(job, output));
   if (!folder) return tl::unexpected(folder.error());
   const auto result = compute_plan(*config, threads, progress);
   if (!result) return tl::unexpected(result.error());
   if (auto done = write_plan_tables(folder->folder(), *config, *result); !done) return tl::unexpected(done.error());
   if (auto done = write_plan_figures(folder->folder(), *config, *result); !done) return tl::unexpected(done.error());
 
-  io::Run run{.command = "plan", .version = version(), .time_scale = TimeScale::utc};
-  run.started_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  run.time_scale = TimeScale::utc;
   if (auto input = io::describe_input("job", job.string(), job)) run.inputs.push_back(std::move(*input));
   run.settings_json = config_json([&](ConfigVisitor& v) { describe(v, *config); });
   run.results_json = plan_json(*config, *result);

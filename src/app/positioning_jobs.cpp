@@ -10,8 +10,8 @@
 
 #include "network_report.hpp"
 #include "versine/app/gnss.hpp"
+#include "versine/app/job_run.hpp"
 #include "versine/app/stationing.hpp"
-#include "versine/app/version.hpp"
 #include "versine/core/calendar.hpp"
 #include "versine/core/units.hpp"
 #include "versine/geodesy/attitude.hpp"
@@ -73,25 +73,13 @@ struct Report {
 };
 
 Expected<Report> open_report(const std::string& command, const fs::path& job, const fs::path& output) {
-  fs::path target = output.empty() ? job.parent_path() / job.stem() : output;
-  auto folder = io::ResultFolder::create(target);
+  auto folder = io::ResultFolder::create(result_target(job, output));
   if (!folder) return tl::unexpected(folder.error());
-  Report r{.folder = std::move(*folder), .run = {.command = command, .version = version()}};
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  r.run.started_utc = to_text({std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()}, TimeScale::utc);
+  Report r{.folder = std::move(*folder), .run = begin_run(command)};
   auto file = io::describe_input("job", job.string(), job);
   if (!file) return tl::unexpected(file.error());
   r.run.inputs.push_back(std::move(*file));
   return r;
-}
-
-Expected<void> add_inputs(Report& r, const char* role, const std::vector<InputPath>& files) {
-  for (const InputPath& f : files) {
-    auto file = io::describe_input(role, f.written, f.path);
-    if (!file) return tl::unexpected(file.error());
-    r.run.inputs.push_back(std::move(*file));
-  }
-  return {};
 }
 
 Expected<PositioningRun> close_report(Report& r, RunRecord record, const nlohmann::ordered_json& summary,
@@ -153,7 +141,7 @@ Expected<PositioningRun> run_gnss(const fs::path& path, std::span<const std::str
   if (!report) return tl::unexpected(report.error());
   for (const auto& [role, files] :
        {std::pair{"rover", &job->gnss.rover}, {"base", &job->gnss.base}, {"navigation", &job->gnss.navigation}}) {
-    if (auto done = add_inputs(*report, role, *files); !done) return tl::unexpected(done.error());
+    if (auto done = note_files(role, *files, report->run.inputs); !done) return tl::unexpected(done.error());
   }
   report->run.settings_json = config_json([&](ConfigVisitor& v) { describe(v, *job); });
   if (auto done = io::write_gnss_csv(report->folder.path("gnss.csv"), solved->series); !done) {
@@ -183,7 +171,7 @@ Expected<PositioningRun> run_stationing(const fs::path& path, std::span<const st
   report->run.time_scale = job->total_station.time_scale;
   for (const auto& [role, files] :
        {std::pair{"readings", &job->total_station.readings}, {"control", &job->total_station.control}}) {
-    if (auto done = add_inputs(*report, role, *files); !done) return tl::unexpected(done.error());
+    if (auto done = note_files(role, *files, report->run.inputs); !done) return tl::unexpected(done.error());
   }
   report->run.settings_json = config_json([&](ConfigVisitor& v) { describe(v, *job); });
   if (auto done = io::write_landmarks_csv(report->folder.path("landmarks.csv"), o->landmarks); !done) {

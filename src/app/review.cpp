@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
-#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
+
+#include "versine/app/constraints.hpp"
 
 namespace versine::app {
 
@@ -15,96 +15,72 @@ using json = nlohmann::ordered_json;
 
 namespace {
 
-Error wrong(std::size_t index, const char* key, const char* expected) {
-  return {.field = fmt::format("constraint[{}].{}", index, key),
-          .found = "a value that is not understood",
-          .expected = expected};
+/// Only the notation changes; what a constraint must have is for read_constraints to say.
+template <class Container>
+void insert(Container& into, const json& value, const auto&... key) {
+  const auto add = [&](auto&& node) {
+    if constexpr (sizeof...(key) == 0) {
+      into.push_back(std::forward<decltype(node)>(node));
+    } else {
+      into.insert(key..., std::forward<decltype(node)>(node));
+    }
+  };
+  if (value.is_string()) return add(value.get<std::string>());
+  if (value.is_boolean()) return add(value.get<bool>());
+  if (value.is_number_integer()) return add(value.get<std::int64_t>());
+  if (value.is_number()) return add(value.get<double>());
+  if (value.is_array()) {
+    toml::array list;
+    for (const json& item : value) insert(list, item);
+    return add(std::move(list));
+  }
+  if (value.is_object()) {
+    toml::table table;
+    for (const auto& [name, item] : value.items()) insert(table, item, name);
+    return add(std::move(table));
+  }
 }
 
-Expected<toml::table> to_toml(const json& c, std::size_t index) {
-  if (!c.is_object()) return tl::unexpected(wrong(index, "", "an object"));
-  toml::table out;
-  if (const auto name = c.find("recording"); name != c.end()) {
-    if (!name->is_string()) return tl::unexpected(wrong(index, "recording", "a name"));
-    out.insert("recording", name->get<std::string>());
-  }
-  for (const char* key : {"from_s", "to_s"}) {
-    const auto value = c.find(key);
-    if (value == c.end() || !value->is_number() || !std::isfinite(value->get<double>())) {
-      return tl::unexpected(wrong(index, key, "seconds of the recording's clock"));
-    }
-    out.insert(key, value->get<double>());
-  }
-  if (!(c["from_s"].get<double>() <= c["to_s"].get<double>())) {
-    return tl::unexpected(wrong(index, "to_s", "a time that is not before from_s"));
-  }
-  const auto tracks = c.find("tracks");
-  if (tracks == c.end() || !tracks->is_array() || tracks->empty()) {
-    return tl::unexpected(wrong(index, "tracks", "the identifiers of at least one track"));
-  }
-  toml::array ids;
-  for (const json& id : *tracks) {
-    if (!id.is_string()) return tl::unexpected(wrong(index, "tracks", "identifiers of tracks"));
-    ids.push_back(id.get<std::string>());
-  }
-  out.insert("tracks", std::move(ids));
-  if (const auto excluded = c.find("excluded"); excluded != c.end()) {
-    if (!excluded->is_boolean()) return tl::unexpected(wrong(index, "excluded", "true or false"));
-    out.insert("excluded", excluded->get<bool>());
-  }
-  if (const auto comment = c.find("comment"); comment != c.end() && comment->is_string()) {
-    out.insert("comment", comment->get<std::string>());
-  }
-  return out;
+Error not_written(const std::filesystem::path& path) {
+  return {.file = path.string(),
+          .found = "that it cannot be written",
+          .expected = "a folder that may be written to, beside the result",
+          .advice = "copy the result to a place of your own and open it there"};
 }
 
 }  // namespace
 
-Expected<void> write_constraints(const std::filesystem::path& path, const std::string& text) {
+Expected<void> save_review(const std::filesystem::path& path, const std::string& text) {
   const json list = json::parse(text, nullptr, false);
   if (!list.is_array()) return fail({.found = "a review that is no JSON array"});
-  toml::array tables;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    auto table = to_toml(list[i], i);
-    if (!table) return tl::unexpected(table.error());
-    tables.push_back(std::move(*table));
-  }
+  if (const auto before = load_review(path); !before) return tl::unexpected(before.error());
   toml::table root;
-  root.insert("constraint", std::move(tables));
+  insert(root, list, "constraint");
   const auto part = std::filesystem::path(path).concat(".part");
-  std::error_code code;
   {
     std::ofstream file(part, std::ios::binary);
     file << "# What a person decided in versine view. In the job: constraints = \"" << path.filename().string()
          << "\"\n\n"
          << root << '\n';
-    if (!file.flush()) code = std::make_error_code(std::errc::io_error);
+    if (!file.flush()) return tl::unexpected(not_written(path));
   }
-  if (!code) std::filesystem::rename(part, path, code);
-  if (!code) return {};
-  return fail({.file = path.string(),
-               .found = "that it cannot be written",
-               .expected = "a folder that may be written to, beside the result",
-               .advice = "copy the result to a place of your own and open it there"});
+  std::error_code code;
+  if (const auto understood = read_constraints(part); !understood) {
+    std::filesystem::remove(part, code);
+    Error error = understood.error();
+    error.file.clear(), error.line = 0;  // of a file that nobody has seen
+    return tl::unexpected(error);
+  }
+  std::filesystem::rename(part, path, code);
+  if (code) return tl::unexpected(not_written(path));
+  return {};
 }
 
-Expected<std::string> read_constraints(const std::filesystem::path& path) {
+Expected<std::string> load_review(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) return std::string("[]");
-  toml::table root;
-  try {
-    root = toml::parse_file(path.string());
-  } catch (const toml::parse_error& problem) {
-    return fail({.file = path.string(),
-                 .line = problem.source().begin.line,
-                 .found = std::string(problem.description()),
-                 .expected = "constraints as docs/formats-georef.md describes them",
-                 .advice = "mend the line, or move the file away and review anew"});
-  }
-  const auto* list = root["constraint"].as_array();
-  if (list == nullptr) return std::string("[]");
-  std::ostringstream out;
-  out << toml::json_formatter(*list);
-  return out.str();
+  auto constraints = read_constraints(path);
+  if (!constraints) return tl::unexpected(constraints.error());
+  return json::parse(config_json([&](ConfigVisitor& v) { describe(v, *constraints); }))["constraint"].dump();
 }
 
 }  // namespace versine::app

@@ -7,11 +7,12 @@
 
 namespace versine::app {
 
-/// Writes what a reviewer decided (a JSON array of constraints, docs/formats-georef.md) as the TOML that `versine
-/// georef` reads; whole or not at all. Fails naming the constraint and key that is not understood.
-[[nodiscard]] Expected<void> write_constraints(const std::filesystem::path& path, const std::string& json);
+/// Keeps what a reviewer decided (a JSON array of constraints, docs/formats-georef.md) as the TOML that `versine
+/// georef` reads; whole or not at all. Fails naming the constraint and key that is not understood, and rather than
+/// replace a file that holds something else.
+[[nodiscard]] Expected<void> save_review(const std::filesystem::path& path, const std::string& json);
 
 /// The file's constraints as such a JSON array; empty when there is no file.
-[[nodiscard]] Expected<std::string> read_constraints(const std::filesystem::path& path);
+[[nodiscard]] Expected<std::string> load_review(const std::filesystem::path& path);
 
 }  // namespace versine::app

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "versine/app/simulate.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <chrono>
@@ -9,7 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "versine/app/version.hpp"
+#include "versine/app/job_run.hpp"
 #include "versine/io/landxml.hpp"
 #include "versine/io/result_folder.hpp"
 #include "versine/io/run_json.hpp"
@@ -84,12 +83,8 @@ json summary_of(const simulation::World& world, const simulation::SimulatedRecor
 }
 
 /// run.json, for the folder to be known as Versine's own and the recording to be made again.
-Expected<void> write_record(const io::ResultFolder& folder, const std::filesystem::path& job,
+Expected<void> write_record(io::Run run, const io::ResultFolder& folder, const std::filesystem::path& job,
                             const SimulateConfig& config, const json& summary, double seconds) {
-  io::Run run;
-  run.command = "simulate";
-  run.version = version();
-  run.started_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
   run.time_scale = config.scenario.time_scale;
   auto input = io::describe_input("job", job.string(), job);
   if (!input) return tl::unexpected(std::move(input.error()));
@@ -112,6 +107,7 @@ Expected<SimulateRun> run_simulate(const std::filesystem::path& job, std::span<c
   auto folder = io::ResultFolder::create(output.empty() ? fs::path(job).replace_extension(".recording") : output);
   if (!folder) return tl::unexpected(std::move(folder.error()));
   progress.report("track and motion", 0.0);
+  io::Run begun = begin_run("simulate");
   std::optional<JourneyNetwork> map;
   if (config->journey.present) {
     auto loaded = load_network(config->journey);
@@ -141,7 +137,7 @@ Expected<SimulateRun> run_simulate(const std::filesystem::path& job, std::span<c
   if (!done) return tl::unexpected(std::move(done.error()));
   summary["runs"] = config->runs;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  if (done = write_record(*folder, job, *config, summary, seconds); !done) {
+  if (done = write_record(std::move(begun), *folder, job, *config, summary, seconds); !done) {
     return tl::unexpected(std::move(done.error()));
   }
   if (done = folder->commit(); !done) return tl::unexpected(std::move(done.error()));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "versine/app/job_run.hpp"
 #include "versine/app/progress_file.hpp"
 #include "versine/app/report.hpp"
 #include "versine/app/survey_landmark.hpp"
@@ -102,19 +103,15 @@ Expected<SurveyRun> run_survey(const std::filesystem::path& job, std::span<const
   auto config = read_survey_config(job, overrides);
   if (!config) return tl::unexpected(config.error());
   if (auto done = check_report(config->report); !done) return tl::unexpected(done.error());
-  std::filesystem::path folder = output;
-  if (folder.empty()) {
-    folder = config->output.folder.empty() ? std::filesystem::path(job).replace_extension(".result")
-                                           : job.parent_path() / config->output.folder;
-  }
-  auto writer = io::ResultFolder::create(folder);
+  io::Run run = begin_run("survey");
+  auto writer = io::ResultFolder::create(result_target(job, output, config->output.folder));
   if (!writer) return tl::unexpected(writer.error());
   ProgressFile visible(progress, writer->folder());
   NotedLog noted(log, visible);
   auto result = compute_survey(*config, job, visible, noted);
   if (!result) return tl::unexpected(result.error());
   visible.finish();
-  return write_survey(*config, *result, *writer, progress);
+  return write_survey(*config, *result, std::move(run), *writer, progress);
 }
 
 }  // namespace versine::app

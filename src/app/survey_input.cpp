@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "versine/app/job_run.hpp"
 #include "versine/io/read_recording.hpp"
 #include "versine/sensors/plausibility.hpp"
 #include "versine/sensors/series_check.hpp"
@@ -73,21 +74,12 @@ void keep_fixed(Series<sensors::GnssSample>& gnss, RunRecord& record) {
   std::erase_if(gnss.samples, is_other);
 }
 
-Expected<void> note_files(const char* role, const std::vector<InputPath>& files, SurveyInput& input) {
-  for (const InputPath& f : files) {
-    auto file = io::describe_input(role, f.written, f.path);
-    if (!file) return tl::unexpected(file.error());
-    input.files.push_back(std::move(*file));
-  }
-  return {};
-}
-
 /// Observations of rover and base become the series that `load_gnss` would read.
 Expected<void> solve_gnss(const SurveyConfig& config, SurveyInput& input, Progress& progress) {
   const GnssProcessing& g = config.gnss_raw;
   for (const auto& [role, files] :
        {std::pair{"gnss rover", &g.rover}, {"gnss base", &g.base}, {"gnss navigation", &g.navigation}}) {
-    if (auto noted = note_files(role, *files, input); !noted) return noted;
+    if (auto noted = note_files(role, *files, input.files); !noted) return noted;
   }
   SilentLog log;
   auto solved = process_gnss(g, progress, log);
@@ -105,7 +97,7 @@ Expected<void> solve_gnss(const SurveyConfig& config, SurveyInput& input, Progre
 Expected<void> solve_total_station(const SurveyConfig& config, SurveyInput& input, Progress& progress) {
   const StationingProcessing& t = config.total_station;
   for (const auto& [role, files] : {std::pair{"total station", &t.readings}, {"control points", &t.control}}) {
-    if (auto noted = note_files(role, *files, input); !noted) return noted;
+    if (auto noted = note_files(role, *files, input.files); !noted) return noted;
   }
   SilentLog log;
   auto solved = process_stationing(t, progress, log);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "versine/app/survey_output.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <chrono>
@@ -11,7 +10,6 @@
 #include "network_report.hpp"
 #include "versine/app/landmark_residuals.hpp"
 #include "versine/app/report.hpp"
-#include "versine/app/version.hpp"
 #include "versine/core/units.hpp"
 #include "versine/io/write_trajectory.hpp"
 
@@ -137,8 +135,8 @@ Expected<geodesy::Projection> project_crs(const SurveyConfig& config, const geod
 
 }  // namespace
 
-Expected<SurveyRun> write_survey(const SurveyConfig& config, SurveyResult& result, io::ResultFolder& folder,
-                                 Progress& progress) {
+Expected<SurveyRun> write_survey(const SurveyConfig& config, SurveyResult& result, io::Run run,
+                                 io::ResultFolder& folder, Progress& progress) {
   auto& solution = result.estimate.solution;
   if (solution.smoothed.empty()) {
     return fail({.found = "a solution without any point",
@@ -213,10 +211,6 @@ Expected<SurveyRun> write_survey(const SurveyConfig& config, SurveyResult& resul
   result.input.record = record;
   const json summary = summary_of(config, result, projection->definition());
   SurveyConfig described = config;
-  io::Run run;
-  run.command = "survey";
-  run.version = version();
-  run.started_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
   run.time_scale = solution.smoothed.scale;
   run.inputs = result.input.files;
   if (result.geometry) {

@@ -214,11 +214,11 @@ Expected<ViewContent> open_georef_view(const fs::path& folder, const std::string
     return found == view->journeys.end() ? std::nullopt : std::optional(found->second.fixes());
   };
   content.constraints_json = [view] {
-    const auto text = read_constraints(constraints_file(view->folder));
+    const auto text = load_review(constraints_file(view->folder));
     return text ? *text : std::string("[]");
   };
   content.put_constraints = [view](const std::string& text) {
-    return write_constraints(constraints_file(view->folder), text);
+    return save_review(constraints_file(view->folder), text);
   };
   content.report = report_of(folder);
   return content;

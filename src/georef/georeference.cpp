@@ -199,22 +199,35 @@ Expected<RecordingResult> georeference(const Map& map, Recording recording, cons
   return result;
 }
 
-Expected<void> check(const Map& map, std::span<const Constraint> constraints) {
+Expected<void> check(std::span<const Constraint> constraints) {
   for (std::size_t i = 0; i < constraints.size(); ++i) {
     const auto& c = constraints[i];
-    const std::string field = fmt::format("constraint[{}].", i + 1);
+    const std::string field = fmt::format("constraint[{}].", i);
     if (!(c.from < c.to)) {
       return fail({.field = field + "to_s",
                    .found = fmt::format("{} s, not after from_s = {} s", c.to.seconds(), c.from.seconds()),
                    .expected = "a time span",
                    .advice = "exchange both, or mend one"});
     }
-    for (const auto& id : c.tracks) {
-      const auto& tracks = map.network.tracks;
+    if (c.tracks.empty()) {
+      return fail({.field = field + "tracks",
+                   .found = "none",
+                   .expected = "the identifiers of at least one track",
+                   .advice = "name them, or take the constraint out"});
+    }
+  }
+  return {};
+}
+
+Expected<void> check(const Map& map, std::span<const Constraint> constraints) {
+  if (auto good = check(constraints); !good) return good;
+  const auto& tracks = map.network.tracks;
+  for (std::size_t i = 0; i < constraints.size(); ++i) {
+    for (const auto& id : constraints[i].tracks) {
       if (std::any_of(tracks.begin(), tracks.end(), [&](const auto& t) { return t.id == id || t.line_id == id; })) {
         continue;
       }
-      return fail({.field = field + "tracks",
+      return fail({.field = fmt::format("constraint[{}].tracks", i),
                    .found = fmt::format("'{}', which is not on the map", id),
                    .expected = "identifiers of tracks or lines of the map",
                    .advice = "take them from georef.json or network.geojson of the result"});

@@ -157,6 +157,18 @@ TEST_F(GeorefResult, KeepsWhatAReviewerDecides) {
   EXPECT_EQ(json::parse(view->constraints_json()), decided);
 }
 
+TEST_F(GeorefResult, NeverReplacesAFileThatItDoesNotUnderstand) {
+  const std::string broken = "[[constraint]]\nfrom_s = 1\nto_s = 2\ntrack = [\"A\"]\n";
+  write(constraints_file(folder), broken);
+  const auto view = open();
+  ASSERT_TRUE(view) << view.error().message();
+  const auto done = view->put_constraints(R"([{"from_s":1,"to_s":2,"tracks":["A"]}])");
+  ASSERT_FALSE(done);
+  EXPECT_NE(done.error().message().find("constraint[0].track"), std::string::npos) << done.error().message();
+  std::ifstream file(constraints_file(folder));
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), broken);
+}
+
 TEST_F(GeorefResult, SaysWhatIsWrongWithAFolder) {
   fs::remove(folder / "fixes.csv");
   EXPECT_NE(open().error().message().find("fixes.csv"), std::string::npos);

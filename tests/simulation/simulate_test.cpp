@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/trolley_scenario.hpp"
 #include "versine/core/units.hpp"
 #include "versine/geodesy/attitude.hpp"
 #include "versine/geodesy/local_frame.hpp"
@@ -18,17 +19,6 @@
 namespace versine::simulation {
 namespace {
 using Eigen::Vector3d;
-
-Scenario trolley_on(double length, double speed, double stand) {
-  Scenario s;
-  s.track.alignment.crs = "+proj=tmerc +lat_0=0 +lon_0=9 +k=1 +x_0=500000 +ellps=GRS80 +units=m";
-  s.track.alignment.horizontal = *design::HorizontalAxis::chain(
-      {510000.0, 5300000.0, 0.7}, {design::line(length / 2), design::arc(length / 2, 800.0)});
-  s.track.spectrum = Spectrum::china_ballastless;
-  s.motion = {.start = 5.0, .stand = stand, .legs = {{.to = length - 5.0, .speed = speed, .stop = 10.0}}};
-  s.equipment.imu = ImuModel{.errors = sensors::find_imu_grade("fog")->errors};
-  return s;
-}
 
 TEST(Simulate, IsReproducibleAndIndependentOfThreads) {
   Scenario s = trolley_on(60.0, 1.0, 20.0);
@@ -167,6 +157,7 @@ TEST(TotalStation, ReadingsLeadBackToTheInstrument) {
   const stationing::Instrument instrument{.target_sigma = 0.0};
   const auto network = stationing::ControlNetwork::create(r.control_points);
   ASSERT_TRUE(network) << network.error().message();
+  double sum = 0.0;
   for (const auto& station : r.stationings) {
     const auto reduced = stationing::reduce(station, instrument);
     ASSERT_TRUE(reduced) << reduced.error().message();
@@ -181,9 +172,14 @@ TEST(TotalStation, ReadingsLeadBackToTheInstrument) {
         ((*world)->C_lv(t) * geodesy::to_matrix(s.equipment.total_station->mounting)).transpose());
     const Vector3d error = turn.angle() * turn.axis();
     const Eigen::Matrix3d covariance = result->covariance.block<3, 3>(3, 3);
-    EXPECT_LT(error.dot(covariance.llt().solve(error)), 22.0);
+    const double squared = error.dot(covariance.llt().solve(error));
+    EXPECT_LT(squared, 22.0);
     EXPECT_LT(error.norm(), 1.5e-4);
+    sum += squared;
   }
+  // 21 degrees of freedom: 0.1 % to 99.9 %.
+  EXPECT_GT(sum, 5.9);
+  EXPECT_LT(sum, 46.8);
 }
 
 TEST(Check, NamesTheKeyAndTheCure) {

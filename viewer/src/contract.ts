@@ -193,6 +193,7 @@ export interface Stretch {
 
 /** What a reviewer decided: docs/formats-georef.md. */
 export interface Constraint {
+  /** None: every recording. */
   recording?: string;
   from_s: number;
   to_s: number;

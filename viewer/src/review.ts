@@ -63,7 +63,7 @@ export class Review {
   }
 
   decided(journey: Journey, stretch: Stretch): Constraint | undefined {
-    return this.list.find((c) => (c.recording === undefined || c.recording === journey.recording) && c.from_s <= stretch.from && c.to_s >= stretch.to);
+    return this.list.find((c) => (!c.recording || c.recording === journey.recording) && c.from_s <= stretch.from && c.to_s >= stretch.to);
   }
 
   private async write(next: Constraint[]): Promise<void> {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdio>
 #include <memory>
 
 #include "command.hpp"
@@ -16,12 +15,7 @@ int calibrate(const JobOptions& options) {
     run = app::run_calibrate(options.job, options.set, options.output, progress);
   }
   if (!run) return report(run.error());
-  if (options.json) {
-    std::printf("%s\n", run->summary_json.c_str());
-  } else if (!options.quiet) {
-    std::printf("%sResult: %s\n", run->summary_text.c_str(), run->folder.string().c_str());
-  }
-  return run->acceptable ? good : unacceptable;
+  return print_result(options, run->summary_text, run->summary_json, run->folder, run->acceptable);
 }
 }  // namespace
 

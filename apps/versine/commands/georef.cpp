@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "versine/app/georef.hpp"
 
-#include <cstdio>
 #include <memory>
 
 #include "command.hpp"
@@ -19,12 +18,7 @@ int run(const JobOptions& options, bool online) {
   }
   if (!done) return report(done.error());
   for (const auto& f : done->faults) report(f);
-  if (options.json) {
-    std::printf("%s\n", done->summary_json.c_str());
-  } else if (!options.quiet) {
-    std::printf("%sResult: %s\n", done->summary_text.c_str(), done->folder.string().c_str());
-  }
-  return done->faults.empty() ? good : unacceptable;
+  return print_result(options, done->summary_text, done->summary_json, done->folder, done->faults.empty());
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "versine/app/plan.hpp"
 
-#include <cstdio>
 #include <memory>
 
 #include "command.hpp"
@@ -17,12 +16,7 @@ int plan(const JobOptions& options, int monte_carlo) {
     run = app::run_plan(options.job, options.set, options.output, monte_carlo, options.threads, progress);
   }
   if (!run) return report(run.error());
-  if (options.json) {
-    std::printf("%s\n", run->summary_json.c_str());
-  } else if (!options.quiet) {
-    std::printf("%s\nResult: %s\n", run->summary_text.c_str(), run->folder.string().c_str());
-  }
-  return run->met ? good : unacceptable;
+  return print_result(options, run->summary_text, run->summary_json, run->folder, run->met);
 }
 }  // namespace
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cstdio>
 #include <memory>
 
 #include "command.hpp"
@@ -19,12 +18,7 @@ int run(Job& job, const JobOptions& options) {
     done = job(options.job, options.set, options.output, progress, log);
   }
   if (!done) return report(done.error());
-  if (options.json) {
-    std::printf("%s\n", done->summary_json.c_str());
-  } else if (!options.quiet) {
-    std::printf("%sResult: %s\n", done->summary_text.c_str(), done->folder.string().c_str());
-  }
-  return good;
+  return print_result(options, done->summary_text, done->summary_json, done->folder);
 }
 
 void add(CLI::App& app, int& exit, const char* name, const char* purpose, Job& job) {

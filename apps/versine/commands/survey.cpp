@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "versine/app/survey.hpp"
 
-#include <cstdio>
 #include <memory>
 
 #include "command.hpp"
@@ -18,18 +17,14 @@ int survey(const JobOptions& options) {
     run = app::run_survey(options.job, options.set, options.output, progress, log);
   }
   if (!run) return report(run.error());
-  if (options.json) {
-    std::printf("%s\n", run->summary_json.c_str());
-  } else if (!options.quiet) {
-    std::printf("%sResult: %s\n", run->summary_text.c_str(), run->folder.string().c_str());
-  }
-  return good;
+  return print_result(options, run->summary_text, run->summary_json, run->folder);
 }
 }  // namespace
 
 void add_survey(CLI::App& app, int& exit) {
-  auto* command = app.add_subcommand("survey", "Process a recording of a trolley or vehicle into a trajectory with its "
-                                               "uncertainty");
+  auto* command = app.add_subcommand("survey",
+                                     "Process a recording of a trolley or vehicle into a trajectory with its "
+                                     "uncertainty");
   auto options = std::make_shared<JobOptions>();
   add_job_options(*command, *options);
   command->callback([options, &exit] { exit = survey(*options); });

@@ -6,6 +6,7 @@
 
 #include "versine/app/geometry_config.hpp"
 #include "versine/app/geometry_coordinates.hpp"
+#include "versine/app/job_run.hpp"
 #include "versine/app/report_config.hpp"
 #include "versine/filter/error_chain.hpp"
 #include "versine/io/fastenings_csv.hpp"
@@ -43,9 +44,6 @@ struct GeometryResult {
 /// Summary for run.json and `--json`: an object, as text; and for a person.
 [[nodiscard]] std::string geometry_summary_json(const GeometryResult& result);
 [[nodiscard]] std::string geometry_summary_text(const GeometryResult& result);
-
-/// Adds a file to the inputs of a run, with its checksum.
-[[nodiscard]] Expected<void> note_file(const char* role, const InputPath& path, std::vector<io::RunInput>& files);
 
 /// Files of the design, gauge and sleeper of a configuration, read.
 struct GeometryFiles {

@@ -5,8 +5,8 @@
 
 namespace versine::app {
 
-/// Writes every file of a survey's result and commits the folder.
-[[nodiscard]] Expected<SurveyRun> write_survey(const SurveyConfig& config, SurveyResult& result,
+/// Writes every file of a survey's result and commits the folder; `run` is what has begun.
+[[nodiscard]] Expected<SurveyRun> write_survey(const SurveyConfig& config, SurveyResult& result, io::Run run,
                                                io::ResultFolder& folder, Progress& progress);
 
 }  // namespace versine::app

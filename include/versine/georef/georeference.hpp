@@ -66,7 +66,8 @@ struct RecordingResult {
                                                      std::span<const Constraint> constraints = {},
                                                      const geodesy::Projection* projection = nullptr);
 
-/// Whether every track that a constraint names is on the map, and its time span has a length.
+/// Whether each constraint has a time span and a track; and whether the map has its tracks.
+[[nodiscard]] Expected<void> check(std::span<const Constraint> constraints);
 [[nodiscard]] Expected<void> check(const Map& map, std::span<const Constraint> constraints);
 
 /// Where the vehicle was at a time.
