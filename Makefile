@@ -82,9 +82,9 @@ accuracy-positioning: setup
 report-images: build
 	benchmarks/report_images.sh $(VERSINE) docs/images
 
-# Georeferencing: real logs, and 500 simulated journeys on each of two networks (docs/accuracy.md); needs the programs of
-# benchmarks/.
-accuracy-georef: build
+# Georeferencing: real logs, then 500 simulated recordings on each of two networks with the diagram of path
+# probabilities (docs/accuracy.md).
+accuracy-georef: setup
 	cmake --preset release -DVERSINE_BENCHMARKS=ON
 	cmake --build $(BUILD) -j $(JOBS) --target versine_georef_brussels versine_georef_accuracy
 	$(BUILD)/benchmarks/versine_georef_brussels $(VERSINE_DATA)

@@ -32,9 +32,9 @@ void trim(const network::Network& network, PathSolution& p) {
   p.coordinates = network::PathCoordinates(network, network::Path(from, to));
 }
 
-/// Two passes on a path: the second weighs each fix by what the whole journey says of it.
-void solve_on_path(const Map& map, const Epochs& epochs, const Options& options, PathSolution& p) {
-  const auto first = filter_on_path(p.coordinates, epochs, options);
+/// Two passes on a path: the second, after the filter's `first`, weighs each fix by what the whole journey says of it.
+void solve_on_path(const Map& map, const Epochs& epochs, const Options& options, const Filtered& first,
+                   PathSolution& p) {
   const auto rough = smooth(epochs, first);
   const auto weights = smoothed_weights(p.coordinates, epochs, options, first, rough);
   auto second = filter_on_path(p.coordinates, epochs, options, weights);
@@ -51,20 +51,28 @@ JourneyResult solve(const Map& map, const Epochs& epochs, const JourneySpan& spa
   j.steps = static_cast<std::size_t>(epochs.epochs.back().step) + 1;
   j.starts_standing = span.starts_standing;
   j.ends_standing = span.ends_standing;
-  for (auto& h : hypotheses) {
+  const double least = std::log(options.smallest_probability);
+  std::vector<Filtered> filtered(hypotheses.size());
+  double best = -INFINITY;
+  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
     PathSolution p;
-    p.coordinates = network::PathCoordinates(map.network, std::move(h.path));
-    p.evidence = filter_on_path(p.coordinates, epochs, options).evidence;
-    p.evidence.route = h.prior - h.astray;
+    p.coordinates = network::PathCoordinates(map.network, std::move(hypotheses[i].path));
+    auto f = filter_on_path(p.coordinates, epochs, options);
+    p.evidence = f.evidence;
+    p.evidence.route = hypotheses[i].prior - hypotheses[i].astray;
+    best = std::max(best, p.evidence.total());
+    if (!(p.evidence.total() < best + least)) filtered[i] = std::move(f);
     j.paths.push_back(std::move(p));
+  }
+  for (std::size_t i = 0; i < filtered.size(); ++i) {
+    auto& p = j.paths[i];
+    if (!(p.evidence.total() < best + least)) solve_on_path(map, epochs, options, filtered[i], p);
+    filtered[i] = {};
   }
   set_posterior(j.paths);
   std::erase_if(j.paths, [&](const auto& p) { return p.probability < options.smallest_probability; });
   double sum = 0.0;
-  for (auto& p : j.paths) {
-    solve_on_path(map, epochs, options, p);
-    sum += p.probability;
-  }
+  for (auto& p : j.paths) sum += p.probability;
   for (auto& p : j.paths) p.probability /= sum;
   merge_equal(j.paths);
   for (const auto& p : j.paths) j.entropy -= p.probability > 0.0 ? p.probability * std::log(p.probability) : 0.0;

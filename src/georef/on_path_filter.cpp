@@ -39,10 +39,25 @@ double log_gauss(double r, double variance) {
   return -0.5 * (r * r / variance + std::log(2.0 * std::numbers::pi * variance));
 }
 
-double log_student(double r, double variance, double nu) {
-  return std::lgamma(0.5 * (nu + 1.0)) - std::lgamma(0.5 * nu) - 0.5 * std::log(nu * std::numbers::pi * variance) -
-         0.5 * (nu + 1.0) * std::log1p(r * r / variance / nu);
-}
+/// Logarithm of Student's t density; what depends on its degrees of freedom only is worked out once.
+class LogStudent {
+ public:
+  explicit LogStudent(double nu)
+      : nu_(nu),
+        one_(std::lgamma(0.5 * (nu + 1.0)) - std::lgamma(0.5 * nu) - 0.5 * std::log(nu * std::numbers::pi)),
+        two_(std::lgamma(0.5 * (nu + 2.0)) - std::lgamma(0.5 * nu) - std::log(nu * std::numbers::pi)) {}
+  /// In one dimension.
+  [[nodiscard]] double one(double nis, double variance) const {
+    return one_ - 0.5 * std::log(variance) - 0.5 * (nu_ + 1.0) * std::log1p(nis / nu_);
+  }
+  /// In two; `determinant` of the covariance.
+  [[nodiscard]] double two(double nis, double determinant) const {
+    return two_ - 0.5 * std::log(determinant) - 0.5 * (nu_ + 2.0) * std::log1p(nis / nu_);
+  }
+
+ private:
+  double nu_, one_, two_;
+};
 
 class PathFilter {
  public:
@@ -52,6 +67,7 @@ class PathFilter {
         epochs_(epochs),
         options_(options),
         weights_(weights),
+        student_(options.gnss.nu),
         table_(epochs.motion, epochs.grid, epochs.correlation_time) {}
 
   Filtered run() {
@@ -59,6 +75,7 @@ class PathFilter {
     const std::size_t n = epochs_.epochs.size();
     out_.predicted.reserve(n), out_.updated.reserve(n);
     out_.predicted_covariance.reserve(n), out_.updated_covariance.reserve(n);
+    out_.colour_kept.reserve(n), out_.residuals.reserve(n);
     for (std::size_t k = 0; k < n; ++k) {
       const Epoch& e = epochs_.epochs[k];
       if (k > 0) predict(e, e.step - epochs_.epochs[k - 1].step);
@@ -90,13 +107,11 @@ class PathFilter {
 
  private:
   void measure(const Epoch& e, std::size_t k) {
-    if (e.standing) scalar(0.0, 1e-4, speed_row(), true);
-    if (e.speed) scalar(*e.speed, e.sigma_speed * e.sigma_speed, speed_row(), false);
+    if (e.standing) speed(0.0, 1e-4, true);
+    if (e.speed) speed(*e.speed, e.sigma_speed * e.sigma_speed, false);
     if (e.position) position(e, k);
     if (e.turn) turn(e);
   }
-
-  static Eigen::RowVector4d speed_row() { return {0, 1, 0, 0}; }
 
   void initialise() {
     const auto& es = epochs_.epochs;
@@ -177,15 +192,16 @@ class PathFilter {
     P_ -= PH * PH.transpose() / S;
   }
 
-  void scalar(double z, double R, const Eigen::RowVector4d& H, bool sure) {
-    const double r = z - H.dot(x_.transpose()), S = (H * P_ * H.transpose())(0) + R, nu = options_.gnss.nu;
+  void speed(double z, double R, bool sure) {
+    const Eigen::RowVector4d H(0, 1, 0, 0);
+    const double r = z - x_[1], S = P_(1, 1) + R, nu = options_.gnss.nu;
     const double nis = r * r / S;
     if (sure) {
       out_.evidence.speed += log_gauss(r, S);
       correct(H, r, R);
       return;
     }
-    out_.evidence.speed += log_student(r, S, nu);
+    out_.evidence.speed += student_.one(nis, S);
     if (nis > options_.gnss.gate) return;
     const double w = std::min(1.0, (nu + 1.0) / (nu + nis));
     correct(H, r, R + S * (1.0 / w - 1.0));
@@ -237,9 +253,7 @@ class PathFilter {
     double w = std::min(1.0, (g.nu + 2.0) / (g.nu + nis));
     bool gated = gross(i, e);
     if (!weights_.empty()) w = weights_[index], gated = !(w > 0.02);
-    out_.evidence.position += std::lgamma(0.5 * (g.nu + 2.0)) - std::lgamma(0.5 * g.nu) -
-                              std::log(g.nu * std::numbers::pi) - 0.5 * std::log(Sa * Sc) -
-                              0.5 * (g.nu + 2.0) * std::log1p(nis / g.nu);
+    out_.evidence.position += student_.two(nis, Sa * Sc);
     if (gated && weights_.empty() && rc * rc < 16.0 * Sc) {
       // Fixes that agree with the track but not with the distance, many in a row: it is the distance that is wrong.
       if (++astray_ >= 10) P_(0, 0) += ra * ra, astray_ = 0;
@@ -265,7 +279,7 @@ class PathFilter {
     const Eigen::RowVector4d H(k1 - k0, k0 * dt, 0, 0);
     const double R = options_.turn_rate_sigma * options_.turn_rate_sigma;
     const double S = (H * P_ * H.transpose())(0) + R, nu = options_.gnss.nu;
-    out_.evidence.turn_rate += log_student(r, S, nu);
+    out_.evidence.turn_rate += student_.one(r * r / S, S);
     const double w = std::min(1.0, (nu + 1.0) / (nu + r * r / S));
     if (r * r < options_.gnss.gate * S) correct(H, r, R + S * (1.0 / w - 1.0));
   }
@@ -274,6 +288,7 @@ class PathFilter {
   const Epochs& epochs_;
   const Options& options_;
   std::span<const double> weights_;
+  LogStudent student_;
   MotionTable table_;
   State4 x_ = State4::Zero();
   Covariance4 P_ = Covariance4::Identity();

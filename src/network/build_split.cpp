@@ -95,7 +95,7 @@ void cut_where_ends_touch(const BuildOptions& options, Lines& lines, RunRecord& 
 }  // namespace
 
 Lines project_lines(const NetworkSource& source, const std::vector<std::vector<Eigen::Vector2d>>& points,
-                    const std::vector<double>& scales, RunRecord& record) {
+                    const std::vector<std::vector<double>>& scales, RunRecord& record) {
   Lines out;
   out.lines.reserve(source.tracks.size());
   out.index.reserve(source.tracks.size());

@@ -24,7 +24,7 @@ struct Lines {
 
 /// Projects all lines; drops and reports those that are no track.
 Lines project_lines(const NetworkSource& source, const std::vector<std::vector<Eigen::Vector2d>>& points,
-                    const std::vector<double>& scales, RunRecord& record);
+                    const std::vector<std::vector<double>>& scales, RunRecord& record);
 
 /// Finds where each line is split: at labelled connections, shared vertices, or ends that touch its inside.
 void find_cuts(const NetworkSource& source, const BuildOptions& options, Lines& lines, RunRecord& record);

@@ -33,11 +33,24 @@ PathCoordinates::PathCoordinates(const Network& network, Path path) : path_(std:
     const double heading = std::atan2(leg.x(), leg.y());
     headings_.push_back(i == 0 ? heading : headings_.back() + geodesy::wrap_pi(heading - headings_.back()));
   }
+  // Two boxes a segment: a place is found without a search, however long the path.
+  const std::size_t boxes = 2 * headings_.size();
+  boxes_per_metre_ = static_cast<double>(boxes) / distances_.back();
+  boxes_.reserve(boxes + 1);
+  for (std::size_t b = 0, i = 0; b <= boxes; ++b) {
+    const double d = static_cast<double>(b) / boxes_per_metre_;
+    while (i + 1 < headings_.size() && distances_[i + 1] <= d) ++i;
+    boxes_.push_back(static_cast<std::uint32_t>(i));
+  }
 }
 
 std::size_t PathCoordinates::segment_at(double d) const {
-  const auto it = std::upper_bound(distances_.begin() + 1, distances_.end() - 1, d);
-  return static_cast<std::size_t>(it - distances_.begin()) - 1;
+  const double x = d * boxes_per_metre_;
+  const auto box = x > 0.0 ? static_cast<std::size_t>(std::min(x, static_cast<double>(boxes_.size() - 2))) : 0;
+  const auto begin = distances_.begin() + boxes_[box], end = distances_.begin() + boxes_[box + 1];
+  auto it = std::upper_bound(begin + 1, end + 1, d) - 1;
+  if (*it > d && it != distances_.begin()) --it;  // a box's edge is rounded
+  return static_cast<std::size_t>(it - distances_.begin());
 }
 
 Eigen::Vector2d PathCoordinates::position(double d) const {

@@ -8,15 +8,20 @@
 
 namespace versine::network {
 
-Polyline::Polyline(std::span<const Eigen::Vector2d> points, double scale) {
-  if (!(scale > 0.0)) throw std::invalid_argument("Polyline: scale must be positive");
+Polyline::Polyline(std::span<const Eigen::Vector2d> points, std::span<const double> scales) {
+  if (!scales.empty() && scales.size() != points.size()) throw std::invalid_argument("Polyline: one scale a point");
   points_.reserve(points.size());
   distances_.reserve(points.size());
-  for (const auto& p : points) {
-    const double step = points_.empty() ? 0.0 : (p - points_.back()).norm() / scale;
+  double last_scale = 1.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector2d& p = points[i];
+    const double scale = scales.empty() ? 1.0 : scales[i];
+    if (!(scale > 0.0)) throw std::invalid_argument("Polyline: scales must be positive");
+    const double step = points_.empty() ? 0.0 : (p - points_.back()).norm() / (0.5 * (scale + last_scale));
     if (!points_.empty() && !(step > 0.0)) continue;
     distances_.push_back(points_.empty() ? 0.0 : distances_.back() + step);
     points_.push_back(p);
+    last_scale = scale;
   }
   if (points_.size() < 2) throw std::invalid_argument("Polyline: needs two distinct points");
 }

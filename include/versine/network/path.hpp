@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -63,7 +64,9 @@ class PathCoordinates {
   std::vector<double> starts_;
   std::vector<Eigen::Vector2d> points_;
   std::vector<double> distances_;
-  std::vector<double> headings_;  // of each segment, unwrapped
+  std::vector<double> headings_;      // of each segment, unwrapped
+  std::vector<std::uint32_t> boxes_;  // segment in which each of equal parts of the path begins
+  double boxes_per_metre_ = 0.0;
 };
 
 /// Whether every transition of a path exists in the network. The index of the first that does not, else path.size().

@@ -13,9 +13,9 @@ enum class End : unsigned char { begin, end };
 class Polyline {
  public:
   Polyline() = default;
-  /// `scale` is map metres per ground metre (Projection::distortion). Consecutive equal points are merged.
-  /// Throws std::invalid_argument when fewer than two distinct points remain.
-  explicit Polyline(std::span<const Eigen::Vector2d> points, double scale = 1.0);
+  /// `scales` are map metres per ground metre at each point (Projection::distortion); empty: 1. Consecutive equal
+  /// points are merged. Throws std::invalid_argument when fewer than two distinct points remain.
+  explicit Polyline(std::span<const Eigen::Vector2d> points, std::span<const double> scales = {});
 
   [[nodiscard]] const std::vector<Eigen::Vector2d>& points() const { return points_; }
   /// Ground distance of each point from the first, m; strictly increasing.
