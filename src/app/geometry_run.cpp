@@ -56,11 +56,10 @@ Expected<GeometryRun> run_geometry(const std::filesystem::path& job, std::span<c
     if (auto done = note_file("odometer", o.file, run.inputs); !done) return tl::unexpected(done.error());
     odometers.push_back(std::move(raw->series));
   }
-  ProgressFile visible(progress, folder->folder());
+  ProgressFile visible(progress, *folder);
   auto result = compute_track_geometry(config.geometry, trajectory->series, nullptr, odometers, {}, visible);
   if (!result) return tl::unexpected(result.error());
-  visible.finish();
-  if (auto done = write_track_geometry(config.geometry, *result, *folder, progress); !done)
+  if (auto done = write_track_geometry(config.geometry, *result, *folder, visible); !done)
     return tl::unexpected(done.error());
   run.time_scale = trajectory->series.scale;
   run.inputs.insert(run.inputs.end(), result->files.begin(), result->files.end());

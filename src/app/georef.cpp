@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "versine/app/job_run.hpp"
+#include "versine/app/progress_file.hpp"
 #include "versine/app/report.hpp"
 #include "versine/core/calendar.hpp"
 #include "versine/io/georef_result.hpp"
@@ -194,6 +195,7 @@ Expected<GeorefRun> run_georef(const fs::path& job, std::span<const std::string>
   config->run_online = online;
   auto folder = io::ResultFolder::create(result_target(job, output));
   if (!folder) return tl::unexpected(folder.error());
+  ProgressFile visible(progress, *folder);
   io::Run run = begin_run("georef");
   auto last = Clock::now();
   const auto stage = [&](const char* name) {
@@ -201,7 +203,7 @@ Expected<GeorefRun> run_georef(const fs::path& job, std::span<const std::string>
     run.timings_s.emplace_back(name, std::chrono::duration<double>(now - last).count());
     last = now;
   };
-  progress.report("map", 0.0);
+  visible.report("map", 0.0);
   const auto map = load_map(*config);
   if (!map) return tl::unexpected(map.error());
   if (auto good = georef::check(**map, config->constraints); !good) {
@@ -210,8 +212,8 @@ Expected<GeorefRun> run_georef(const fs::path& job, std::span<const std::string>
     return tl::unexpected(error);
   }
   stage("map");
-  auto entries = Solver(*config, **map).run(threads, progress);
-  if (progress.cancelled()) return fail({.found = "cancelled"});
+  auto entries = Solver(*config, **map).run(threads, visible);
+  if (visible.cancelled()) return fail({.found = "cancelled"});
   stage("journeys");
   std::vector<GeorefOutcome> outcomes;
   std::vector<OnlineReplay> replays;
@@ -237,8 +239,8 @@ Expected<GeorefRun> run_georef(const fs::path& job, std::span<const std::string>
     }
   }
   if (failed == outcomes.size()) return tl::unexpected(out.faults.front());
-  progress.report("writing", 0.0);
-  if (auto done = write_results(*config, folder->folder(), **map, outcomes, replays, progress); !done)
+  visible.report("writing", 0.0);
+  if (auto done = write_results(*config, folder->folder(), **map, outcomes, replays, visible); !done)
     return tl::unexpected(done.error());
   if (auto done = add_inputs(run, *config, job); !done) return tl::unexpected(done.error());
   stage("write");

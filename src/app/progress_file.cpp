@@ -37,19 +37,14 @@ void ProgressFile::write() {
                                {"stages", nlohmann::ordered_json::array()},
                                {"notes", notes_}};
   for (const auto& [stage, seconds] : done_) state["stages"].push_back({{"stage", stage}, {"seconds", seconds}});
-  const fs::path part = folder_ / (std::string(".") + name);
+  const fs::path part = fs::path(path_).concat(".part");
   std::error_code code;
   {
     std::ofstream file(part, std::ios::binary);
     file << state.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     if (!file.flush()) return;
   }
-  fs::rename(part, folder_ / name, code);
-}
-
-void ProgressFile::finish() {
-  std::error_code code;
-  fs::remove(folder_ / name, code);
+  fs::rename(part, path_, code);
 }
 
 std::optional<fs::path> running_job(const fs::path& target) {

@@ -7,6 +7,7 @@
 #include <chrono>
 
 #include "versine/app/job_run.hpp"
+#include "versine/app/partial_survey.hpp"
 #include "versine/app/progress_file.hpp"
 #include "versine/app/report.hpp"
 #include "versine/app/survey_landmark.hpp"
@@ -51,7 +52,7 @@ fusion::AidedInsInput estimator_input(SurveyInput& input) {
 }  // namespace
 
 Expected<SurveyResult> compute_survey(const SurveyConfig& config, const std::filesystem::path& job, Progress& progress,
-                                      Log& log) {
+                                      Log& log, SurveyWatch* onlooker) {
   SurveyResult result;
   Stopwatch watch(result.timings_s);
   auto input = read_survey_input(config, job, progress);
@@ -61,13 +62,15 @@ Expected<SurveyResult> compute_survey(const SurveyConfig& config, const std::fil
     log.info(fmt::format("{}: {} x {}, {}", f.sensor, f.count, f.kind, to_string(f.action)));
   }
 
+  if (onlooker != nullptr) onlooker->read(*input);
   fusion::AidedInsInput estimator = estimator_input(*input);
   Series<sensors::GnssSample> hidden;
   if (config.withhold.window > 0.0) hidden = withhold(estimator.gnss, config.withhold);
   auto solved = config.method == SurveyMethod::landmark
                     ? solve_by_landmarks(estimator, config.estimator, config.landmark_method, progress)
-                    : fusion::run_aided_ins(estimator, config.estimator, progress, log);
+                    : fusion::run_aided_ins(estimator, config.estimator, progress, log, onlooker);
   if (!solved) return tl::unexpected(solved.error());
+  if (onlooker != nullptr) onlooker->solved(*solved);
   if (!hidden.empty()) {
     result.withheld = compare_withheld(hidden, solved->solution.smoothed, config.estimator.gnss_lever.l_b);
   }
@@ -106,12 +109,12 @@ Expected<SurveyRun> run_survey(const std::filesystem::path& job, std::span<const
   io::Run run = begin_run("survey");
   auto writer = io::ResultFolder::create(result_target(job, output, config->output.folder));
   if (!writer) return tl::unexpected(writer.error());
-  ProgressFile visible(progress, writer->folder());
+  ProgressFile visible(progress, *writer);
   NotedLog noted(log, visible);
-  auto result = compute_survey(*config, job, visible, noted);
+  PartialSurvey partial(*config, *writer);
+  auto result = compute_survey(*config, job, visible, noted, &partial);
   if (!result) return tl::unexpected(result.error());
-  visible.finish();
-  return write_survey(*config, *result, std::move(run), *writer, progress);
+  return write_survey(*config, *result, std::move(run), *writer, visible);
 }
 
 }  // namespace versine::app

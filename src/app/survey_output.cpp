@@ -63,6 +63,7 @@ json summary_of(const SurveyConfig& config, const SurveyResult& result, const st
                                   {"lower", s.lower},
                                   {"upper", s.upper}});
   }
+  out["standstills"] = json::parse(standstills_json(estimate.standstills, track.front().time));
   const auto& errors = estimate.solution.sensor_errors;
   if (!errors.empty()) {
     for (std::size_t i = 0; i < estimate.solution.error_names.size(); ++i) {
@@ -134,6 +135,16 @@ Expected<geodesy::Projection> project_crs(const SurveyConfig& config, const geod
 }
 
 }  // namespace
+
+std::string standstills_json(std::span<const inertial::Interval> standstills, Time begin) {
+  double total = 0.0, longest = 0.0, first = 0.0;
+  for (const inertial::Interval& s : standstills) {
+    total += s.seconds();
+    longest = std::max(longest, s.seconds());
+    if ((s.from - begin).seconds() < 1.0) first = s.seconds();
+  }
+  return json{{"count", standstills.size()}, {"total_s", total}, {"longest_s", longest}, {"first_s", first}}.dump();
+}
 
 Expected<SurveyRun> write_survey(const SurveyConfig& config, SurveyResult& result, io::Run run,
                                  io::ResultFolder& folder, Progress& progress) {

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "versine/app/partial_survey.hpp"
 #include "versine/app/progress_file.hpp"
 #include "versine/app/version.hpp"
 #include "versine/app/view_georef.hpp"
@@ -74,8 +75,11 @@ class Follower {
     const std::lock_guard lock(mutex_);
     std::error_code code;
     const auto written = fs::last_write_time(folder_ / "run.json", code);
-    // A result that cannot be opened is tried again only when it has changed.
-    if (!code && written != written_) (void)open();
+    if (code) {
+      open_partial();
+    } else if (written != written_) {  // a result that cannot be opened is tried again only when it has changed
+      (void)open();
+    }
     return content_;
   }
 
@@ -103,6 +107,29 @@ class Follower {
   }
 
  private:
+  /// Before the first result: what the job has so far, or that it has ended with nothing.
+  void open_partial() {
+    const auto job = running_job(folder_);
+    if (!job) {
+      if (!failure_.empty()) return;
+      failure_ = "The job has ended without a result; its own messages say why. Run it again: this page follows.";
+      content_ = nullptr;
+      ++generation_;
+      return;
+    }
+    const auto newest = newest_partial(*job);
+    if (!failure_.empty()) {  // another job has been started
+      failure_.clear();
+      ++generation_;
+    }
+    if (!newest || *newest == partial_) return;
+    auto opened = open_view(*newest);
+    if (!opened) return;  // it was replaced just now
+    partial_ = *newest;
+    content_ = std::make_shared<const ViewContent>(std::move(*opened));
+    ++generation_;
+  }
+
   Expected<void> open() {
     std::error_code code;
     written_ = fs::last_write_time(folder_ / "run.json", code);
@@ -128,6 +155,7 @@ class Follower {
   std::shared_ptr<const ViewContent> content_;
   std::string failure_;
   fs::file_time_type written_;
+  fs::path partial_;  ///< the part of a running job that is open
   int generation_ = 0;
 };
 
@@ -198,13 +226,11 @@ Expected<ViewContent> follow_view(const fs::path& folder, const std::optional<fs
     return text && json::accept(*text) ? *text : std::string("[]");
   };
   out.put_marks = [marks](const std::string& text) { return write_marks(marks, text); };
-  if (const auto now = follower->content(); now && now->put_constraints) {
-    out.put_constraints = [follower](const std::string& text) -> Expected<void> {
-      const auto current = follower->content();
-      if (!current || !current->put_constraints) return fail({.found = "no result that is open for review"});
-      return current->put_constraints(text);
-    };
-  }
+  out.put_constraints = [follower](const std::string& text) -> Expected<void> {
+    const auto current = follower->content();
+    if (!current || !current->put_constraints) return fail({.found = "no result that is open for review"});
+    return current->put_constraints(text);
+  };
   return out;
 }
 

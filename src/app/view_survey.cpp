@@ -12,6 +12,7 @@
 #include "versine/core/calendar.hpp"
 #include "versine/io/input_stream.hpp"
 #include "view_difference.hpp"
+#include "view_packup.hpp"
 #include "view_survey_parts.hpp"
 #include "view_trajectory.hpp"
 
@@ -193,7 +194,7 @@ Expected<void> SurveyView::describe(const std::optional<fs::path>& compare) {
   survey["plan"] = plan_of(files_.results.value("crs", ""), *grid_.x, grid_.easting, grid_.northing);
   survey["exceedances"] = *exceedances;
   survey["controlPoints"] = *control;
-  survey["packUp"] = pack_up_of(files_, grid_, *control, *exceedances);
+  survey["packUp"] = pack_up_of(files_, grid_, *grid_.x, *control, *exceedances);
   survey["conventions"] = files_.results.value("conventions", json::object());
   text_ =
       view_frame("survey", files_, files_.results.value("crs", ""), subtitle(), verdict_of(files_), std::move(survey));

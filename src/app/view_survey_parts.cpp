@@ -44,6 +44,8 @@ std::string view_frame(const char* kind, const SurveyFiles& files, const std::st
            {"findings", files.run.value("findings", json::array())},
            {"rejections", std::move(rejections)},
            {"rejected", files.run.value("rejections", json::array()).size()}};
+  const std::string partial = files.run.value("results", json::object()).value("partial", "");
+  if (!partial.empty()) out["partial"] = partial;
   out[kind] = std::move(survey);
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
@@ -69,13 +71,6 @@ const char* class_of_level(const SurveyFiles& files, const std::string& level) {
   const auto levels = quality.value("levels", std::vector<std::string>{});
   const auto at = static_cast<std::size_t>(std::find(levels.begin(), levels.end(), level) - levels.begin());
   return levels.empty() ? "AL" : class_of(at, levels.size());
-}
-
-/// Metres of the grid whose flags have a bit.
-double flagged_length(const SurveyGrid& grid, std::uint32_t bit, double step) {
-  const auto n = std::count_if(grid.flags.begin(), grid.flags.end(),
-                               [&](double f) { return (static_cast<std::uint32_t>(f) & bit) != 0; });
-  return static_cast<double>(n) * step;
 }
 
 }  // namespace
@@ -221,51 +216,6 @@ Expected<json> control_points_of(const SurveyFiles& files, const SurveyGrid& gri
     if (k > 2) continue;
     out.back()["innovation"][k] = number_or_null(1e3 * TextTable::number(row, table->find("innovation")));
     out.back()["sigma"][k] = number_or_null(1e3 * TextTable::number(row, table->find("sigma")));
-  }
-  return out;
-}
-
-json pack_up_of(const SurveyFiles& files, const SurveyGrid& grid, const json& control, const json& exceedances) {
-  json out = json::array();
-  const double step = files.results.value("step_m", 0.25);
-  const auto add = [&](const char* name, bool good, std::string text) {
-    out.push_back({{"name", name}, {"good", good}, {"text", std::move(text)}});
-  };
-  const auto length = [&](const char* name, std::uint32_t bit, const char* none) {
-    const double metres = flagged_length(grid, bit, step);
-    add(name, !(metres > 0.0), metres > 0.0 ? fmt::format("{:.2f} m", metres) : none);
-  };
-  length("gaps in the trajectory", track::no_trajectory, "none");
-  length("without gauge", track::no_gauge, "none");
-  if (!files.settings.value("design", "").empty()) length("off the design", track::off_design, "none");
-  if (!control.empty()) {
-    std::size_t rejected = 0;
-    double apart = 0.0, last = grid.x->front();
-    for (const json& c : control) {
-      if (!c["used"].get<bool>()) {
-        ++rejected;
-        continue;
-      }
-      apart = std::max(apart, std::abs(c["x"].get<double>() - last));
-      last = c["x"].get<double>();
-    }
-    apart = std::max(apart, grid.x->back() - last);
-    add("control points", rejected == 0,
-        fmt::format("{} used, {} rejected, at most {:.0f} m without", control.size() - rejected, rejected, apart));
-  }
-  for (const json& i : files.run.value("results", json::object()).value("innovations", json::array())) {
-    const std::string sensor = i.value("sensor", "");
-    if (sensor != "landmark" && sensor != "gnss" && sensor != "position") continue;
-    const double nis = i.value("mean_nis_per_row", 0.0), upper = i.value("upper", 0.0);
-    add(sensor == "landmark" ? "closure on control points" : "agreement with GNSS", nis <= upper,
-        nis <= upper ? "within its sigmas" : fmt::format("{:.1f} times its sigmas", std::sqrt(nis)));
-  }
-  const auto doubtful = std::count_if(exceedances.begin(), exceedances.end(), [](const json& e) {
-    return e["probability"].is_number() && e["probability"] < 0.95;
-  });
-  if (!exceedances.empty()) {
-    add("doubtful exceedances", doubtful == 0,
-        doubtful == 0 ? "none: each is certain to 95 %" : fmt::format("{} to re-measure (below 95 %)", doubtful));
   }
   return out;
 }

@@ -39,9 +39,6 @@ struct SurveyGrid {
 [[nodiscard]] nlohmann::ordered_json plan_of(const std::string& crs, const std::vector<double>& x,
                                              const std::vector<double>& easting, const std::vector<double>& northing);
 [[nodiscard]] Expected<nlohmann::ordered_json> control_points_of(const SurveyFiles& files, const SurveyGrid& grid);
-[[nodiscard]] nlohmann::ordered_json pack_up_of(const SurveyFiles& files, const SurveyGrid& grid,
-                                                const nlohmann::ordered_json& control,
-                                                const nlohmann::ordered_json& exceedances);
 
 /// Slews and lifts of adjustment.csv on the grid's own places; empty where there are none.
 struct AdjustmentSeries {

@@ -11,6 +11,7 @@
 #include "versine/geodesy/attitude.hpp"
 #include "versine/geodesy/projection.hpp"
 #include "versine/io/read_recording.hpp"
+#include "view_packup.hpp"
 
 namespace versine::app {
 
@@ -102,6 +103,37 @@ json trajectory_plan(const geodesy::Trajectory& track, const std::vector<double>
   return plan_of(crs, at, easting, northing);
 }
 
+/// Way travelled at each point, m; nothing is travelled between two segments.
+std::vector<double> travelled(const geodesy::Trajectory& track) {
+  std::vector<double> out;
+  out.reserve(track.size());
+  for (std::size_t i = 0; i < track.size(); ++i) {
+    double step = 0.0;
+    if (i > 0 && track[i].segment == track[i - 1].segment) {
+      step = 0.5 * (track[i].v_eb_n + track[i - 1].v_eb_n).norm() * (track[i].time - track[i - 1].time).seconds();
+    }
+    out.push_back((out.empty() ? 0.0 : out.back()) + step);
+  }
+  return out;
+}
+
+/// Where fixes and landmarks were measured, of a job that is still running.
+json recorded_places(const json& recorded, const std::string& crs) {
+  const auto projection = geodesy::Projection::create(crs);
+  json out = json::object();
+  if (!projection || !recorded.is_object()) return out;
+  for (const char* kind : {"fixes", "landmarks"}) {
+    json easting = json::array(), northing = json::array();
+    for (const json& p : recorded.value(kind, json::array())) {
+      const auto map = projection->forward({p.at(0).get<double>() * units::deg, p.at(1).get<double>() * units::deg, 0});
+      easting.push_back(number_or_null(map.easting));
+      northing.push_back(number_or_null(map.northing));
+    }
+    out[kind] = {{"easting", std::move(easting)}, {"northing", std::move(northing)}};
+  }
+  return out;
+}
+
 }  // namespace
 
 Expected<ViewContent> open_trajectory_view(SurveyFiles files) {
@@ -146,15 +178,25 @@ Expected<ViewContent> open_trajectory_view(SurveyFiles files) {
                                 {"sigma", q.sigma != nullptr},
                                 {"limits", json::array()}});
   }
-  const std::string crs = files.run.value("results", json::object()).value("crs", "");
+  const json results = files.run.value("results", json::object());
+  const std::string crs = results.value("crs", "");
   survey["plan"] = trajectory_plan(track, *x, crs);
-  for (const char* none : {"exceedances", "controlPoints", "packUp"}) survey[none] = json::array();
-  const double length = files.run.value("results", json::object()).value("length_m", nan);
+  if (results.contains("recorded")) survey["recorded"] = recorded_places(results["recorded"], crs);
+  SurveyGrid grid{.x = x, .mileage = {}, .time_s = {}, .flags = {}, .easting = {}, .northing = {}};
+  for (const auto& p : track) grid.time_s.push_back(p.time.seconds());
+  const auto control = control_points_of(files, grid);
+  if (!control) return tl::unexpected(control.error());
+  survey["exceedances"] = json::array();
+  survey["controlPoints"] = *control;
+  survey["packUp"] = pack_up_of(files, grid, travelled(track), *control, json::array());
+  const double length = results.value("length_m", nan);
   const std::string subtitle =
       (std::isfinite(length) ? fmt::format("{:.2f} km · ", 1e-3 * length) : std::string()) +
       fmt::format("{:.0f} min · from {}", x->back() / 60.0, to_text(track.front().time, track.scale).substr(0, 16));
-  view->text = view_frame("survey", files, crs, subtitle, {{"accepted", nullptr}, {"text", "TRAJECTORY ONLY"}},
-                          std::move(survey));
+  const std::string partial = results.value("partial", "");
+  const std::string verdict = partial.empty() ? "TRAJECTORY ONLY" : "SO FAR · " + partial;
+  view->text =
+      view_frame("survey", files, crs, subtitle, {{"accepted", nullptr}, {"text", verdict}}, std::move(survey));
   ViewContent content;
   content.result_json = [view] { return view->text; };
   content.series = [view](const std::string& id, double from, double to,

@@ -73,7 +73,7 @@ geodesy::Trajectory dead_reckon(const AidedInsInput& in, const AidedInsOptions& 
 }  // namespace
 
 Expected<AidedInsResult> run_aided_ins(const AidedInsInput& input, const AidedInsOptions& options, Progress& progress,
-                                       Log& log) {
+                                       Log& log, RunWatch* watch) {
   if (const auto checked = check(input, options); !checked) return fail(checked.error());
   AidedInsResult result;
   const InsLayout layout = InsLayout::from(options);
@@ -86,7 +86,7 @@ Expected<AidedInsResult> run_aided_ins(const AidedInsInput& input, const AidedIn
         inertial::find_standstills({&input.imu, &input.odometer, &input.speed, &input.gnss}, options.standstill);
   }
   detail::Judge judge(options, result);
-  const detail::RunContext context{input, options, layout, result.standstills, judge, result, progress};
+  const detail::RunContext context{input, options, layout, result.standstills, judge, result, progress, watch};
   std::optional<Previous> previous;
   std::int32_t number = 0;
   for (const detail::Segment& segment : detail::segments_of(input, options)) {

@@ -14,6 +14,7 @@ struct RunContext {
   Judge& judge;
   AidedInsResult& result;
   Progress& progress;
+  RunWatch* watch;  ///< nullptr: nobody looks on
 };
 
 /// Filter, smoother and output of one segment; appends to the result. Returns what it leaves to the next segment.

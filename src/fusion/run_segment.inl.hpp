@@ -162,6 +162,14 @@ bool smooth(const RunContext& c, const Steps& steps, SmootherKind kind, std::vec
 }
 
 template <int N>
+geodesy::TrajectoryPoint point_of(const Forward<N>& forward, std::int32_t number) {
+  const inertial::NavState& nav = forward.estimate().nav;
+  Node node;
+  set_covariance(node, forward.covariance());
+  return {nav.time, nav.position, nav.v_eb_n, nav.q_nb, node.position, node.velocity, node.attitude, number};
+}
+
+template <int N>
 Expected<Previous> run_segment(const RunContext& c, const Segment& segment, const Start& start, std::int32_t number) {
   const int n = c.layout.size();
   Steps steps;
@@ -169,6 +177,7 @@ Expected<Previous> run_segment(const RunContext& c, const Segment& segment, cons
   Forward<N> forward(c.input, c.options, c.layout, c.standstills, c.judge);
   const bool done = forward.run(segment, start, steps, report, [&](double fraction) {
     c.progress.report("forward pass", fraction);
+    if (c.watch != nullptr) c.watch->forward(point_of(forward, number), c.result);
     return !c.progress.cancelled();
   });
   if (!done) return fail({.field = "aided INS", .found = "cancelled"});

@@ -68,7 +68,7 @@ Expected<ResultFolder> ResultFolder::create(const fs::path& given) {
 }
 
 ResultFolder::ResultFolder(ResultFolder&& other) noexcept
-    : target_(std::move(other.target_)), folder_(std::move(other.folder_)) {
+    : target_(std::move(other.target_)), folder_(std::move(other.folder_)), scratch_(std::move(other.scratch_)) {
   other.folder_.clear();
 }
 
@@ -79,6 +79,8 @@ ResultFolder::~ResultFolder() {
 
 Expected<void> ResultFolder::commit() {
   std::error_code code;
+  for (const fs::path& path : scratch_) fs::remove_all(path, code);
+  code.clear();
   flush_to_disk(folder_);
   if (fs::exists(target_, code)) {
     if (!exchange_names(folder_, target_)) {

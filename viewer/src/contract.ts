@@ -17,6 +17,7 @@ export interface Result {
   survey?: Survey;
   georef?: Georef;
   failure?: string; // why there is nothing to see
+  partial?: string; // stage that a running job has come to; nothing here is final
   warnings: string[];
   findings: Finding[];
   rejections: Rejection[]; // the first 500
@@ -73,6 +74,7 @@ export interface Survey {
   packUp: PackUpItem[];
   conventions?: Record<string, string>;
   compare?: string; // title of the run that is subtracted
+  recorded?: Partial<Record<'fixes' | 'landmarks', { easting: (number | null)[]; northing: (number | null)[] }>>; // of a running job
 }
 
 /** Posted kilometre on a piece of continuous distance: km = posted + sign * (x - from). */

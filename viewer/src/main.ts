@@ -2,7 +2,7 @@
 import 'uplot/dist/uPlot.min.css';
 import './style.css';
 import { getProgress, getResult, ServerError } from './api';
-import type { Result } from './contract';
+import type { Progress, Result } from './contract';
 import { GeorefScreen } from './georef';
 import type { Screen } from './screen';
 import { SurveyScreen } from './survey';
@@ -35,22 +35,27 @@ async function show(result: Result): Promise<Screen> {
   return screen;
 }
 
+function tell(screen: Screen, progress: Progress): void {
+  if (screen instanceof WaitingScreen) screen.update(progress);
+  const chip = root.querySelector<HTMLElement>('.progress');
+  if (chip) chip.textContent = progress.running ? `running: ${progress.stage ?? ''} ${Math.round(100 * (progress.fraction ?? 0))} %` : '';
+}
+
 /** Looks every two seconds whether a job is running and whether its result has come; the address keeps the view. */
 async function follow(screen: Screen, generation: number): Promise<void> {
   for (;;) {
     await new Promise((resolve) => setTimeout(resolve, 2000));
-    const chip = root.querySelector<HTMLElement>('.progress');
     try {
       const progress = await getProgress();
-      if (screen instanceof WaitingScreen) screen.update(progress);
-      if (chip) chip.textContent = progress.running ? `running: ${progress.stage ?? ''} ${Math.round(100 * (progress.fraction ?? 0))} %` : '';
       if (progress.generation !== generation) {
         generation = progress.generation;
         screen.dispose();
         screen = await show(await getResult());
       }
+      tell(screen, progress);
     } catch (error) {
       // The program has ended: what is on the page can still be looked at.
+      const chip = root.querySelector<HTMLElement>('.progress');
       if (chip) chip.textContent = error instanceof ServerError ? error.message : 'versine view has ended';
     }
   }
@@ -60,7 +65,7 @@ initTheme();
 try {
   const [progress, result] = await Promise.all([getProgress(), getResult()]);
   const screen = await show(result);
-  if (screen instanceof WaitingScreen) screen.update(progress);
+  tell(screen, progress);
   void follow(screen, progress.generation);
 } catch (error) {
   explain(error);

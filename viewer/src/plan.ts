@@ -4,9 +4,11 @@ import Feature from 'ol/Feature';
 import OlMap from 'ol/Map';
 import OlView from 'ol/View';
 import { ScaleLine } from 'ol/control';
+import { extend } from 'ol/extent';
 import { defaults as interactions } from 'ol/interaction/defaults';
 import LineString from 'ol/geom/LineString';
 import MultiLineString from 'ol/geom/MultiLineString';
+import MultiPoint from 'ol/geom/MultiPoint';
 import Point from 'ol/geom/Point';
 import VectorLayer from 'ol/layer/Vector';
 import Projection from 'ol/proj/Projection';
@@ -67,9 +69,16 @@ export class Plan {
       const feature = new Feature(new LineString(line.easting.map((e, i) => [e, line.northing[i]])));
       feature.setStyle(new Style({ stroke: new Stroke({ color: css('--muted'), width: 2 }) }));
       this.lines.addFeature(feature);
-      const e = feature.getGeometry()!.getExtent();
-      for (const i of [0, 1]) extent[i] = Math.min(extent[i], e[i]);
-      for (const i of [2, 3]) extent[i] = Math.max(extent[i], e[i]);
+      extend(extent, feature.getGeometry()!.getExtent());
+    }
+    for (const [kind, fill, radius] of [['fixes', '--fix', 1.5], ['landmarks', '--cursor', 3]] as const) {
+      const places = this.survey.recorded?.[kind];
+      const at = (places?.easting ?? []).flatMap((e, i) => (e === null || places!.northing[i] === null ? [] : [[e, places!.northing[i]!]]));
+      if (at.length === 0) continue;
+      const feature = new Feature(new MultiPoint(at));
+      feature.setStyle(new Style({ image: new Circle({ radius, fill: new Fill({ color: css(fill) }) }) }));
+      this.lines.addFeature(feature);
+      extend(extent, feature.getGeometry()!.getExtent());
     }
     this.window.setStyle(new Style({ stroke: new Stroke({ color: css('--line'), width: 4 }) }));
     this.lines.addFeature(this.window);

@@ -50,7 +50,9 @@ export class SurveyScreen implements Screen {
     const survey = (this.survey = result.survey!);
     this.axis = survey.axis === 'time' ? new TimeAxis() : new Chainage(survey.chainage);
     this.view = new View(survey.x.from, survey.x.to, this.release.signal);
-    this.tab = survey.compare ? 'difference' : (survey.tabs[0]?.id ?? 'notes');
+    // The page of a running job is made anew with every stage: the open tab stays.
+    const before = Object.hasOwn(result, 'partial') ? document.documentElement.dataset.tab : undefined;
+    this.tab = before ?? (survey.compare ? 'difference' : (survey.tabs[0]?.id ?? 'notes'));
     this.strips = survey.strips.map((info) => this.strip(info));
     this.plan = new Plan(survey, result.crs, (x) => this.view.goTo(x));
     this.overview = new Overview(this.view, this.axis, survey.exceedances, survey.controlPoints);
@@ -91,6 +93,9 @@ export class SurveyScreen implements Screen {
   }
 
   dispose(): void {
+    // What grows is seen as a whole again, unless one has looked closer.
+    const { from, to, first, last } = this.view;
+    if (this.result.partial !== undefined && from <= first && to >= last) history.replaceState(null, '', '#');
     this.release.abort();
     this.resized.disconnect();
     cancelAnimationFrame(this.pending);
@@ -110,7 +115,7 @@ export class SurveyScreen implements Screen {
       report: () => void openReport(),
     });
     const left = element('aside', { 'aria-label': 'Plan and exceedances' });
-    left.append(this.plan.element, packUpPanel(this.survey.packUp), this.table.element, this.marks.element);
+    left.append(this.plan.element, packUpPanel(this.survey.packUp, this.result.partial !== undefined), this.table.element, this.marks.element);
     const all = [...this.survey.tabs, ...panels.filter((p) => p.has(this.result)).map(({ id, title }) => ({ id, title }))];
     for (const { id, title } of all) {
       const button = element('button', { role: 'tab', type: 'button', 'data-tab': id, 'aria-controls': 'strips' }, title);
@@ -141,6 +146,7 @@ export class SurveyScreen implements Screen {
 
   private openTab(id: string): void {
     if (id === this.tab) return;
+    document.documentElement.dataset.tab = id;
     for (const strip of this.visible()) strip.destroy();
     this.tab = id;
     void this.show();

@@ -8,28 +8,28 @@
 #include <vector>
 
 #include "versine/core/progress.hpp"
+#include "versine/io/result_folder.hpp"
 
 namespace versine::app {
 
 /// Passes progress on and keeps a small file of it in the folder that a job is writing, for `versine view`: stage,
 /// fraction, seconds so far, and the stages that are done. Each state replaces the last by rename, at most four times
-/// a second and at every change of stage; a full disk is not this file's business. `finish` removes it.
+/// a second and at every change of stage; a full disk is not this file's business.
 class ProgressFile final : public Progress {
  public:
   static constexpr const char* name = "progress.json";
 
-  ProgressFile(Progress& next, std::filesystem::path folder) : next_(next), folder_(std::move(folder)) {}
+  ProgressFile(Progress& next, io::ResultFolder& folder) : next_(next), path_(folder.scratch(name)) {}
   void report(std::string_view stage, double fraction) override;
   [[nodiscard]] bool cancelled() const override { return next_.cancelled(); }
   /// What a person should know before the end: "imu: 2 x gap, split".
   void note(std::string text);
-  void finish();
 
  private:
   void write();
   using Clock = std::chrono::steady_clock;
   Progress& next_;
-  std::filesystem::path folder_;
+  std::filesystem::path path_;
   std::string stage_;
   double fraction_ = 0.0;
   Clock::time_point started_ = Clock::now(), stage_started_ = started_, written_{};

@@ -22,14 +22,21 @@ struct SurveyResult {
   std::optional<WithheldErrors> withheld;
   std::optional<GeometryResult> geometry;
   std::optional<ControlCheck> control;
-  std::vector<std::string> warnings;  ///< of input and estimate, once written
+  std::vector<std::string> warnings;              ///< of input and estimate, once written
   std::optional<inertial::EarthRate> earth_rate;  ///< from the longest standstill, where the gyros can tell it
   std::vector<std::pair<std::string, double>> timings_s;
 };
 
+/// Sees what a survey has so far, stage by stage.
+class SurveyWatch : public fusion::RunWatch {
+ public:
+  virtual void read(const SurveyInput& input) = 0;
+  virtual void solved(const fusion::AidedInsResult& estimate) = 0;
+};
+
 /// All stages up to the solution: read, check, align, forward pass, smoother. Nothing is written.
 [[nodiscard]] Expected<SurveyResult> compute_survey(const SurveyConfig& config, const std::filesystem::path& job,
-                                                    Progress& progress, Log& log);
+                                                    Progress& progress, Log& log, SurveyWatch* onlooker = nullptr);
 
 /// Runs a job: computes and writes the result folder. `output` overrides the job's folder when not empty.
 struct SurveyRun {

@@ -159,11 +159,20 @@ struct AidedInsResult {
   SmootherKind smoother_used = SmootherKind::none;
 };
 
+/// Sees a run before it is finished.
+class RunWatch {
+ public:
+  virtual ~RunWatch() = default;
+  /// The forward filter's estimate of now, some hundred steps after the one before, and what was found until
+  /// then: standstills of the whole recording, innovations and rejections so far.
+  virtual void forward(const geodesy::TrajectoryPoint& now, const AidedInsResult& so_far) = 0;
+};
+
 /// Aided inertial navigation over a whole recording (Chen 2018 section 4.3): alignment, error-state Kalman filter
 /// forward with every aid at its own time, smoother backward. Deterministic. Fails with an Error when the input does
 /// not suffice (no IMU, no position from anything, no heading) or was cancelled; a rejected measurement is in the
 /// record. REQUIRES strictly increasing series.
 [[nodiscard]] Expected<AidedInsResult> run_aided_ins(const AidedInsInput& input, const AidedInsOptions& options,
-                                                     Progress& progress, Log& log);
+                                                     Progress& progress, Log& log, RunWatch* watch = nullptr);
 
 }  // namespace versine::fusion

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <vector>
 
 #include "versine/core/error.hpp"
 
@@ -21,6 +22,11 @@ class ResultFolder {
 
   /// Where to write: a path inside the sibling.
   [[nodiscard]] std::filesystem::path path(const std::filesystem::path& name) const { return folder_ / name; }
+  /// The same for what people look at while the job runs, and what is no part of the result: `commit` removes it.
+  [[nodiscard]] std::filesystem::path scratch(const std::filesystem::path& name) {
+    scratch_.push_back(folder_ / name);
+    return scratch_.back();
+  }
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   [[nodiscard]] const std::filesystem::path& target() const { return target_; }
 
@@ -31,6 +37,7 @@ class ResultFolder {
   ResultFolder(std::filesystem::path target, std::filesystem::path folder)
       : target_(std::move(target)), folder_(std::move(folder)) {}
   std::filesystem::path target_, folder_;
+  std::vector<std::filesystem::path> scratch_;
 };
 
 }  // namespace versine::io
