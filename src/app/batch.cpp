@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <fstream>
+#include <cstdlib>
 
 #include "versine/app/version.hpp"
+#include "versine/core/file_system.hpp"
 #include "versine/io/run_json.hpp"
 #include "versine/io/sha256.hpp"
 
@@ -43,40 +43,10 @@ Expected<std::string> config_digest(const GeorefConfig& config) {
   }
   GeorefConfig c = config;
   c.network = {};
+  c.constraints_file = {};  // what it says is among the constraints
   c.title.clear();
   c.recordings.clear();
   return io::sha256(config_json([&](ConfigVisitor& v) { describe(v, c); }) + "\n" + digests);
-}
-
-bool is_recording(const fs::path& path) {
-  static constexpr std::array endings{".h5", ".hdf5", ".csv", ".pos", ".nmea", ".ubx"};
-  fs::path p = path;
-  if (p.extension() == ".gz" || p.extension() == ".zst") p = p.stem();
-  const std::string name = path.filename().string(), ending = p.extension().string();
-  return !name.starts_with(".") && std::find(endings.begin(), endings.end(), ending) != endings.end();
-}
-
-Outcome<std::vector<fs::path>> list_files(const fs::path& given) {
-  std::vector<fs::path> files;
-  std::error_code code;
-  if (fs::is_directory(given, code)) {
-    for (const auto& entry : fs::recursive_directory_iterator(given, code)) {
-      if (entry.is_regular_file(code) && is_recording(entry.path())) files.push_back(entry.path());
-    }
-  } else {
-    std::ifstream list(given);
-    for (std::string line; std::getline(list, line);) {
-      while (!line.empty() && (line.back() == '\r' || line.back() == ' ')) line.pop_back();
-      if (!line.empty() && line.front() != '#') files.push_back(given.parent_path() / line);
-    }
-  }
-  std::sort(files.begin(), files.end());
-  if (!files.empty()) return files;
-  return failure(Exit::usage, {.file = given.string(),
-                               .field = "inputs",
-                               .found = "no recordings",
-                               .expected = "a folder with .h5, .csv, .pos or .nmea files, or a text file of paths",
-                               .advice = "name it with --inputs"});
 }
 
 /// A recording's name or a reader's message without the path of the file: what a unit leaves must not tell where it
@@ -94,6 +64,28 @@ Error without_path(Error e, const std::string& path) {
   return e;
 }
 
+/// A folder for a unit's monitoring results until they are in the store.
+class Scratch {
+ public:
+  Scratch() {
+    const char* given = std::getenv("VERSINE_SCRATCH");
+    folder_ = (given != nullptr ? fs::path(given) : fs::temp_directory_path()) /
+              fmt::format("versine-batch-{}", process_id());
+    std::error_code code;
+    fs::create_directories(folder_, code);
+  }
+  ~Scratch() {
+    std::error_code code;
+    fs::remove_all(folder_, code);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  [[nodiscard]] const fs::path& folder() const { return folder_; }
+
+ private:
+  fs::path folder_;
+};
+
 Outcome<void> check_input(const batch::Input& input) {
   const auto now = io::describe_input("recording", input.uri, input.uri);
   if (!now) return failure(Exit::again, now.error());
@@ -109,39 +101,30 @@ std::string batch_engine() {
   return "versine " + version() + " georef 1";
 }
 
-Outcome<std::vector<batch::Input>> batch_inputs(const fs::path& folder_or_list, Progress& progress) {
-  const auto files = list_files(fs::absolute(folder_or_list));
-  if (!files) return tl::unexpected(files.error());
-  std::vector<batch::Input> out;
-  for (const auto& file : *files) {
-    progress.report("reading inputs", static_cast<double>(out.size()) / static_cast<double>(files->size()));
-    const auto path = file.lexically_normal();
-    const auto input = io::describe_input("recording", path.string(), path);
-    if (!input) return failure(Exit::usage, input.error());
-    out.push_back({path.string(), input->sha256, input->bytes});
-  }
-  return out;
-}
-
 Outcome<batch::Job> batch_job(const fs::path& job) {
   auto text = batch::read_file(job);
   if (!text) return failure(Exit::usage, text.error().error);
   const auto path = fs::absolute(job);
   const auto config = read_job(*text, path);
   if (!config) return failure(Exit::usage, config.error());
-  // A unit is its input's content: what names single recordings cannot be part of all units.
+  // A unit is its inputs' content: what names single recordings cannot be part of all units.
+  const bool named = std::any_of(config->constraints.begin(), config->constraints.end(),
+                                 [](const georef::Constraint& c) { return !c.recording.empty(); });
   for (const auto& [key, present] :
-       {std::pair("monitoring", !config->monitoring.empty()), std::pair("constraints", !config->constraints.empty()),
+       {std::pair("monitoring", !config->monitoring.empty()), std::pair("constraint.recording", named),
         std::pair("recording", !config->tables.empty())}) {
     if (!present) continue;
-    return failure(Exit::usage, {.file = job.string(),
-                                 .field = key,
-                                 .found = "tables that belong to single recordings",
-                                 .expected = "a job without them",
-                                 .advice = "give such recordings a job of their own ('versine georef')"});
+    return failure(Exit::usage,
+                   {.file = job.string(),
+                    .field = key,
+                    .found = "what belongs to single recordings",
+                    .expected = "a job for all of them",
+                    .advice = "put [[constraint]] and [[monitoring]] into a file beside the recording that "
+                              "has its name and .toml"});
   }
   const auto map = load_map(*config);
   if (!map) return failure(Exit::usage, map.error());
+  if (auto good = georef::check(**map, config->constraints); !good) return failure(Exit::usage, good.error());
   const auto digest = config_digest(*config);
   if (!digest) return failure(Exit::again, digest.error());
   return batch::Job{path.string(), std::move(*text), *digest};
@@ -170,43 +153,80 @@ Outcome<GeorefStage> GeorefStage::prepare(const batch::Manifest& m) {
 }
 
 Outcome<batch::Made> GeorefStage::operator()(const batch::Unit& unit) const {
+  for (const auto& i : unit.inputs) {
+    if (const auto same = check_input(i); !same) return tl::unexpected(same.error());
+  }
   const batch::Input& input = unit.inputs.front();
-  if (const auto same = check_input(input); !same) return tl::unexpected(same.error());
   // The bytes are those of the manifest: what a reader cannot make sense of is bad data, wherever it is tried.
+  batch::Made made;
+  const auto reject = [&](const Error& e) {
+    made.rejection = without_path(e, input.uri);
+    return made;
+  };
+  GeorefCompanion companion;
+  if (unit.inputs.size() > 1) {
+    auto read = read_companion(unit.inputs[1].uri);
+    if (!read) return reject(read.error());
+    if (auto good = georef::check(*map_, read->constraints); !good) return reject(good.error());
+    companion = std::move(*read);
+  }
   std::vector<Error> faults;
   auto recordings = load_recordings(input.uri, faults);
-  batch::Made made;
-  if (!recordings) {
-    made.rejection = without_path(recordings.error(), input.uri);
-    return made;
-  }
+  if (!recordings) return reject(recordings.error());
   batch::Summary summary;
-  std::vector<georef::RecordingResult> results;
   for (const auto& f : faults) {
     const Error e = without_path(f, input.uri);
     summary.failures.push_back({e.file, e});
   }
+  companion.constraints.insert(companion.constraints.end(), config_.constraints.begin(), config_.constraints.end());
+  std::vector<GeorefOutcome> outcomes;
+  std::vector<const georef::RecordingResult*> results;
   for (auto& r : *recordings) {
     r.name = without_path(r.name, input.uri);
-    const std::string name = r.name;
-    auto result = georef::georeference(*map_, std::move(r), config_.options, config_.constraints);
-    if (!result) {
-      summary.failures.push_back({name, without_path(result.error(), input.uri)});
+    std::string name = r.name;
+    outcomes.push_back(
+        {std::move(name), georef::georeference(*map_, std::move(r), config_.options, companion.constraints)});
+  }
+  for (const auto& o : outcomes) {
+    if (!o.result) {
+      summary.failures.push_back({o.name, without_path(o.result.error(), input.uri)});
       continue;
     }
-    for (auto& j : journey_entries(*map_, *result)) summary.journeys.push_back(std::move(j));
-    results.push_back(std::move(*result));
+    for (auto& j : journey_entries(*map_, *o.result)) summary.journeys.push_back(std::move(j));
+    results.push_back(&*o.result);
   }
   if (results.empty()) {
     made.rejection = summary.failures.empty() ? Error{.field = "recordings", .found = "none"}
                                               : std::move(summary.failures.front().error);
     return made;
   }
-  std::vector<const georef::RecordingResult*> pointers;
-  for (const auto& r : results) pointers.push_back(&r);
-  made.files.push_back({"summary", batch::to_text(summary)});
-  made.files.push_back({"positions", positions_table(*map_, pointers, config_.csv_interval)});
+  made.files.push_back({"positions", positions_table(*map_, results, config_.csv_interval)});
+  if (auto done = stamp(companion, outcomes, summary, made); !done) return tl::unexpected(done.error());
+  made.files.insert(made.files.begin(), {"summary", batch::to_text(summary)});
   return made;
+}
+
+Outcome<void> GeorefStage::stamp(const GeorefCompanion& companion, const std::vector<GeorefOutcome>& outcomes,
+                                 batch::Summary& summary, batch::Made& made) const {
+  if (companion.monitoring.empty()) return {};
+  const Scratch scratch;
+  SilentProgress silent;
+  for (std::size_t i = 0; i < companion.monitoring.size(); ++i) {
+    const auto& m = companion.monitoring[i];
+    const auto done = stamp_monitoring(scratch.folder(), *map_, outcomes, {m}, silent);
+    if (!done && done.error().file.starts_with(scratch.folder().string())) return failure(Exit::again, done.error());
+    if (!done) {
+      // As the companion names the file, not where it was: the same bytes wherever it ran.
+      Error e = without_path(done.error(), m.file.path.string());
+      e.file = m.file.written;
+      summary.failures.push_back({m.file.written, std::move(e)});
+      continue;
+    }
+    auto bytes = batch::read_file(scratch.folder() / "monitoring_1.h5");
+    if (!bytes) return tl::unexpected(bytes.error());
+    made.files.push_back({fmt::format("monitoring_{}", i + 1), std::move(*bytes)});
+  }
+  return {};
 }
 
 }  // namespace versine::app

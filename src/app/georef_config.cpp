@@ -42,6 +42,17 @@ Expected<void> load_constraints(GeorefConfig& c) {
   return {};
 }
 
+Expected<GeorefCompanion> read_companion(const std::filesystem::path& path) {
+  GeorefCompanion out;
+  const auto read = read_config(path, [&](ConfigVisitor& v) {
+    describe(v, out.constraints);
+    v.tables<MonitoringConfig>("monitoring", "Monitoring channels to be put on the track.", out.monitoring,
+                               describe_monitoring);
+  });
+  if (!read) return tl::unexpected(read.error());
+  return out;
+}
+
 void describe(ConfigVisitor& v, GeorefConfig& c) {
   v.value("job", c.job, {.doc = "Kind of job.", .example = "\"georef\""});
   v.value("title", c.title, {.doc = "For people."});

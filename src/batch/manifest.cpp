@@ -76,11 +76,13 @@ std::string unit_name(const std::string& engine, const std::string& config, cons
   return io::sha256(text);
 }
 
-Manifest make_manifest(std::string engine, std::string stage, Job job, const std::vector<Input>& inputs, int shards) {
+Manifest make_manifest(std::string engine, std::string stage, Job job, const std::vector<std::vector<Input>>& inputs,
+                       int shards) {
   Manifest m{{}, std::move(engine), std::move(stage), std::move(job), shards, {}};
   std::set<std::string> seen;
-  for (const Input& i : inputs) {
-    Unit u{unit_name(m.engine, m.job.config, m.stage, {i}), m.stage, {i}, i.bytes, 0};
+  for (const auto& together : inputs) {
+    Unit u{unit_name(m.engine, m.job.config, m.stage, together), m.stage, together, 0, 0};
+    for (const Input& i : together) u.weight += i.bytes;
     if (seen.insert(u.unit).second) m.units.push_back(std::move(u));
   }
   std::sort(m.units.begin(), m.units.end(),

@@ -50,6 +50,34 @@ bool goes_on(const Recording& r, const JourneySpan& before, std::size_t begin, s
   return in.norm() > 0.3 * far && out.norm() > 0.3 * far && in.dot(out) > -0.5 * in.norm() * out.norm();
 }
 
+constexpr double longest_step = 5.0;  // s between speeds that a distance is summed up from
+
+/// Metres between two times as an odometer tells; NaN where it has a gap or was not running.
+double travelled_between(const Series<sensors::SpeedSample>& speed, Time from, Time to) {
+  if (speed.size() < 2 || from < speed.samples.front().time || speed.samples.back().time < to) return NAN;
+  const std::size_t first = speed.lower_bound(from);
+  double sum = 0.0;
+  for (std::size_t k = first > 0 ? first - 1 : 0; speed[k].time < to; ++k) {
+    const auto &a = speed[k], &b = speed[k + 1];
+    const double dt = (b.time - a.time).seconds();
+    if (dt > longest_step) return NAN;
+    const auto at = [&](Time t) {
+      return std::lerp(std::abs(a.speed), std::abs(b.speed), (t - a.time).seconds() / dt);
+    };
+    const Time begin = std::max(a.time, from), end = std::min(b.time, to);
+    sum += 0.5 * (at(begin) + at(end)) * (end - begin).seconds();
+  }
+  return sum;
+}
+
+/// The same between two fixes, from the receiver's speeds where there is no odometer.
+double travelled_between(const Recording& r, std::size_t from, std::size_t to) {
+  const Fix &a = r.gnss[from], &b = r.gnss[to];
+  if (const double d = travelled_between(r.speed, a.time, b.time); std::isfinite(d)) return d;
+  const double dt = (b.time - a.time).seconds();
+  return a.speed && b.speed && dt <= longest_step ? 0.5 * (*a.speed + *b.speed) * dt : NAN;
+}
+
 }  // namespace
 
 std::size_t mark_astray(const Map& map, Recording& r, double radius) {
@@ -134,16 +162,10 @@ std::vector<JourneySpan> find_journeys(const Recording& r, const JourneyOptions&
 
 std::vector<Knot> make_knots(const Recording& r, const JourneySpan& span, const Options& options) {
   std::vector<Knot> out;
-  double travelled = 0.0;
-  bool known = false;
+  double travelled = 0.0;  // since the last knot; NaN: not known
   for (std::size_t i = span.first; i <= span.last; ++i) {
     const Fix& f = r.gnss[i];
-    const double dt = i == span.first ? 0.0 : (f.time - r.gnss[i - 1].time).seconds();
-    if (f.speed && i > span.first && r.gnss[i - 1].speed) {
-      travelled += 0.5 * (*f.speed + *r.gnss[i - 1].speed) * dt;
-      known = true;
-      if (dt > 5.0) known = false, travelled = -1e9;
-    }
+    if (i > span.first) travelled += travelled_between(r, i - 1, i);
     const Eigen::Vector2d& p = f.place;
     const double sigma = fix_sigma(f, options.gnss);
     const bool first = out.empty(), last = i == span.last;
@@ -153,8 +175,8 @@ std::vector<Knot> make_knots(const Recording& r, const JourneySpan& span, const 
       continue;
     const double weight = first ? 1.0 : std::clamp(since / options.gnss.correlation_time * 2.0, 0.2, 1.0);
     out.push_back({f.time, p, std::hypot(sigma, options.gnss.map_sigma), weight,
-                   known && travelled >= 0.0 && !first ? travelled : -1.0});
-    travelled = 0.0, known = false;
+                   !first && std::isfinite(travelled) ? travelled : -1.0});
+    travelled = 0.0;
   }
   return out;
 }

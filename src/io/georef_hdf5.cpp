@@ -16,7 +16,8 @@ Hdf5Handle make_group(hid_t at, const std::string& name) {
 void dataset(hid_t group, const char* name, hid_t type, const void* data, std::size_t n) {
   const hsize_t size = n;
   const Hdf5Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
-  const Hdf5Handle set(H5Dcreate2(group, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle options = untimed_dataset();
+  const Hdf5Handle set(H5Dcreate2(group, name, type, space, H5P_DEFAULT, options, H5P_DEFAULT), H5Dclose);
   if (n > 0) H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data);
 }
 
@@ -66,7 +67,8 @@ void write_path(hid_t at, const georef::Map& map, const georef::PathSolution& p)
   column("residual_fix", fix, H5T_NATIVE_INT64);
   const hsize_t size[2] = {fix.size(), 6};
   const Hdf5Handle space(H5Screate_simple(2, size, nullptr), H5Sclose);
-  const Hdf5Handle set(H5Dcreate2(at, "residuals", H5T_NATIVE_FLOAT, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+  const Hdf5Handle options = untimed_dataset();
+  const Hdf5Handle set(H5Dcreate2(at, "residuals", H5T_NATIVE_FLOAT, space, H5P_DEFAULT, options, H5P_DEFAULT),
                        H5Dclose);
   if (!fix.empty()) H5Dwrite(set, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, residual.data());
   attribute(set, "columns", "along_m across_m sigma_along_m sigma_across_m nis weight");

@@ -7,7 +7,7 @@ Hdf5Columns::Hdf5Columns(hid_t file, const std::string& group, const std::vector
     : group_(H5Gcreate2(file, group.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose) {
   const hsize_t none = 0, unlimited = H5S_UNLIMITED, chunk = 8192;
   const Hdf5Handle space(H5Screate_simple(1, &none, &unlimited), H5Sclose);
-  const Hdf5Handle options(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  const Hdf5Handle options = untimed_dataset();
   H5Pset_chunk(options, 1, &chunk);
   H5Pset_shuffle(options);
   H5Pset_deflate(options, 1);

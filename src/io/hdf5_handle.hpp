@@ -27,4 +27,11 @@ class Hdf5Handle {
   herr_t (*close_)(hid_t) = nullptr;
 };
 
+/// Options of a dataset without the time of its making: the same values are the same bytes.
+inline Hdf5Handle untimed_dataset() {
+  Hdf5Handle options(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(options, false);
+  return options;
+}
+
 }  // namespace versine::io

@@ -39,7 +39,8 @@ bool text_list(hid_t file, const char* name, const std::vector<std::string>& lis
   H5Tset_cset(type, H5T_CSET_UTF8);
   const hsize_t size = list.size();
   const Hdf5Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
-  const Hdf5Handle set(H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle options = untimed_dataset();
+  const Hdf5Handle set(H5Dcreate2(file, name, type, space, H5P_DEFAULT, options, H5P_DEFAULT), H5Dclose);
   std::vector<const char*> pointers;
   for (const auto& s : list) pointers.push_back(s.c_str());
   return set >= 0 && (list.empty() || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pointers.data()) >= 0);

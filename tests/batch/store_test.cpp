@@ -29,9 +29,9 @@ class StoreTest : public testing::Test {
   ~StoreTest() override { fs::remove_all(folder); }
 
   static Manifest of(const std::vector<std::uintmax_t>& sizes, int shards) {
-    std::vector<Input> inputs;
+    std::vector<std::vector<Input>> inputs;
     for (std::size_t i = 0; i < sizes.size(); ++i) {
-      inputs.push_back({"/data/" + std::to_string(i), io::sha256(std::to_string(i)), sizes[i]});
+      inputs.push_back({{"/data/" + std::to_string(i), io::sha256(std::to_string(i)), sizes[i]}});
     }
     return make_manifest("engine 1", "stage", {"/job.toml", "a = 1\n", "c0"}, inputs, shards);
   }

@@ -45,7 +45,7 @@ def make_fleet(folder, count):
     (folder / "recordings" / "broken.csv").write_text("time_s,latitude_deg,longitude_deg\n1,here,there\n")
 
 
-class Batch(unittest.TestCase):
+class Store(unittest.TestCase):
     COUNT = 40
 
     @classmethod
@@ -115,6 +115,8 @@ class Batch(unittest.TestCase):
             self.plan(store)
         return store
 
+
+class Batch(Store):
     def test_any_number_of_processes_and_shards(self):
         store = self.store(plan=False)
         self.plan(store, shards=3)
@@ -298,6 +300,88 @@ class Batch(unittest.TestCase):
                          "--from", 20000)
         self.assertEqual(len(late.stdout.splitlines()), 1 + sum(p["time_ns"] > 20000e9 for p in passes))
         self.assertEqual(self.call(self.folder, "passes", "--catalogue", path, "--track", "T7", "--at", 1).returncode, 64)
+
+
+class Companions(Store):
+    """Constraints and monitoring files of single recordings: a file beside each, its name and .toml."""
+    COUNT = 3
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        network = cls.folder / "network.geojson"
+        network.write_text(network.read_text().replace("48.0005", "48.00004"))  # 4.4 m apart: either may be
+        rows = [f"{1030 + k / 200.0:.3f},{(k % 10) - 4.5}" for k in range(200 * 60)]
+        (cls.folder / "recordings" / "axlebox.csv").write_text("t,left\n" + "\n".join(rows) + "\n")
+        monitoring = '[[monitoring]]\nfile = "axlebox.csv"\nchannels = ["left"]\ntimes = "t"\n'
+        (cls.folder / "recordings" / "vehicle_00.csv.toml").write_text(monitoring)
+        (cls.folder / "recordings" / "vehicle_01.csv.toml").write_text(
+            '[[constraint]]\nfrom_s = 0\nto_s = 1e6\ntracks = ["T2"]\n')
+        (cls.folder / "recordings" / "vehicle_02.csv.toml").write_text(monitoring)  # of another time
+        cls.serial = cls.catalogue_of(cls.folder / "again", "--threads", "1")
+
+    def test_each_is_used_for_its_recording_only(self):
+        with sqlite3.connect(self.folder / "again.sqlite") as db:
+            path = dict(db.execute("SELECT uri, path FROM journey JOIN file USING(unit_id) WHERE uri LIKE '%vehicle%csv'"))
+            tracks = {pathlib.Path(uri).name: tracks for uri, tracks in path.items()}
+            self.assertEqual(tracks, {"vehicle_00.csv": "+T1", "vehicle_01.csv": "+T2", "vehicle_02.csv": "+T1"})
+            uris = [pathlib.Path(u).name for u, in db.execute("SELECT uri FROM file WHERE unit_id IN (SELECT unit_id "
+                                                              "FROM output WHERE name = 'monitoring_1')")]
+            self.assertEqual(sorted(uris), ["axlebox.csv", "vehicle_00.csv", "vehicle_00.csv.toml"])
+            digest, = db.execute("SELECT sha256 FROM output WHERE name = 'monitoring_1'").fetchone()
+            recording, found = db.execute("SELECT recording, found FROM failure WHERE field = 'times'").fetchone()
+            self.assertEqual((recording, found), ("axlebox.csv", "samples from 1030.0 to 1090.0 s"))
+        stamped = (self.folder / "again" / "objects" / digest[:2] / digest).read_bytes()
+        self.assertTrue(stamped.startswith(b"\x89HDF"))
+
+    def test_done_again_it_is_the_same(self):
+        store = self.store()
+        self.assertEqual(self.call(store, "run").returncode, 0)
+        for path in (store / "receipts").glob("*/*.json"):
+            path.unlink()
+        time.sleep(1.1)  # another second: no time is in a result
+        self.assert_as_serial(store)
+
+    def test_another_companion_is_another_unit(self):
+        store = self.store()
+        path = self.folder / "recordings" / "vehicle_01.csv.toml"
+        good = path.read_text()
+        try:
+            path.write_text(good.replace("T2", "T1"))
+            self.assertEqual(self.call(store, "run").returncode, 65)
+        finally:
+            path.write_text(good)
+        self.assert_as_serial(store)
+
+    def test_unknown_track_is_told(self):
+        store = self.store(plan=False)
+        path = self.folder / "recordings" / "vehicle_01.csv.toml"
+        good = path.read_text()
+        try:
+            path.write_text(good.replace("T2", "T9"))
+            self.plan(store)
+            self.assertEqual(self.call(store, "run").returncode, 0)
+            self.merged(store)
+            with sqlite3.connect(self.folder / "test_unknown_track_is_told.sqlite") as db:
+                self.assertIn("'T9'", str(db.execute("SELECT found FROM failure").fetchall()))
+        finally:
+            path.write_text(good)
+
+    def test_for_the_whole_fleet(self):
+        job = self.folder / "closed.toml"
+        text = '[network]\nfile = "network.geojson"\n[[constraint]]\nfrom_s = 0\nto_s = 1e6\ntracks = ["T1"]\nexcluded = true\n'
+        job.write_text(text)
+        store = self.store(plan=False)
+        plan = ("plan", "--inputs", "recordings", "--config", "closed.toml")
+        self.assertEqual(self.call(store, *plan).returncode, 0)
+        self.assertEqual(self.call(store, "run").returncode, 0)
+        self.merged(store)
+        with sqlite3.connect(self.folder / "test_for_the_whole_fleet.sqlite") as db:
+            self.assertEqual(db.execute("SELECT DISTINCT path FROM journey").fetchall(), [("+T2",)])
+        job.write_text(text + 'recording = "vehicle_01.csv"\n')
+        done = self.call(store, *plan)
+        self.assertEqual(done.returncode, 64)
+        self.assertIn("beside the recording", done.stderr)
 
 
 # A degree of longitude at 48 degrees on WGS84: a cos(lat) / sqrt(1 - e^2 sin^2(lat)).

@@ -62,6 +62,13 @@ struct GeorefConfig {
 };
 void describe(ConfigVisitor& v, GeorefConfig& c);
 
+/// What belongs to one recording of a batch, in a file of its own beside it.
+struct GeorefCompanion {
+  std::vector<georef::Constraint> constraints;
+  std::vector<MonitoringConfig> monitoring;
+};
+[[nodiscard]] Expected<GeorefCompanion> read_companion(const std::filesystem::path& path);
+
 /// Adds what the constraints file of a job says to its own constraints. Layout: docs/formats-georef.md.
 [[nodiscard]] Expected<void> load_constraints(GeorefConfig& config);
 

@@ -43,10 +43,10 @@ struct Manifest {
 [[nodiscard]] std::string unit_name(const std::string& engine, const std::string& config, const std::string& stage,
                                     const std::vector<Input>& inputs);
 
-/// Units of one input each, and their shards: the longest first onto the least loaded. Files with equal content are one
-/// unit, that of the first of them.
-[[nodiscard]] Manifest make_manifest(std::string engine, std::string stage, Job job, const std::vector<Input>& inputs,
-                                     int shards);
+/// Units of the inputs that belong together, and their shards: the longest first onto the least loaded. Inputs of equal
+/// content are one unit, that of the first of them.
+[[nodiscard]] Manifest make_manifest(std::string engine, std::string stage, Job job,
+                                     const std::vector<std::vector<Input>>& inputs, int shards);
 /// Writes manifests/<id>/{manifest.json, units.jsonl}; the same plan again is the same manifest.
 [[nodiscard]] Outcome<void> write_manifest(const Store& store, Manifest& manifest);
 /// `id` may be a unique beginning; empty: the only manifest of the store. Fails (65) when the files are not what they
