@@ -9,6 +9,7 @@
 #include "versine/app/gnss.hpp"
 #include "versine/core/process.hpp"
 #include "versine/geodesy/ellipsoid.hpp"
+#include "versine/io/input_stream.hpp"
 #include "versine/io/read_recording.hpp"
 #include "versine/io/total_station_formats.hpp"
 #include "versine/stationing/free_station.hpp"
@@ -19,9 +20,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// An error ends the program with its message (main).
+struct Failure {
+  std::string message;
+};
+
 template <class T>
 const T& need(const Expected<T>& e) {
-  if (!e) std::printf("%s\n", e.error().message().c_str()), std::exit(2);
+  if (!e) throw Failure{e.error().message()};
   return *e;
 }
 
@@ -83,7 +89,6 @@ void total_station(const fs::path& path) {
 struct Set {
   std::string name;
   app::GnssProcessing job;
-  std::string systems;                   ///< as rnx2rtkp's -sys
   std::optional<Eigen::Vector3d> truth;  ///< of a rover that stands, ECEF, m
 };
 
@@ -91,70 +96,77 @@ Eigen::Vector3d ecef(const sensors::GnssSample& s) {
   return geodesy::wgs84.to_ecef(s.position).r;
 }
 
-/// RTKLIB's own program with the same options on its command line: epochs with the same fix, largest difference, m.
-std::pair<std::size_t, double> against_rtklib(const Set& set) {
+struct Agreement {
+  std::size_t epochs = 0,
+              same = 0;  ///< of RTKLIB's epochs: same time and fix, and place within 0.3 mm (a last digit)
+  double largest = 0.0;  ///< m
+};
+
+/// RTKLIB's own program with the configuration that the result folder holds (rtklib.conf), against the job's result
+/// without the check of both directions.
+Agreement against_rtklib(const Set& set) {
   app::GnssProcessing g = set.job;
-  g.options.lock_epochs = 0, g.options.fix_elevation = 0.0;  // what the command line cannot say
   g.agreement.distance = 1e9;
   SilentProgress progress;
   SilentLog log;
   const auto ours = app::process_gnss(g, progress, log);
+  const auto program = find_program("rnx2rtkp");
+  if (!program) throw Failure{"rnx2rtkp is not installed"};
   const fs::path folder = fs::temp_directory_path() / "versine-positioning-real";
   fs::create_directories(folder);
-  std::vector<std::string> arguments{
-      "-p", "2", "-m", "15", "-sys", set.systems, "-f", "2", "-v", "3", "-c", "-o", (folder / "own.pos").string()};
+  gnss::Options options = g.options;
+  options.base_ecef = g.base_ecef;
+  std::ofstream(folder / "own.conf") << gnss::rtklib_configuration(options, gnss::Direction::combined);
+  std::vector<std::string> arguments{"-k", (folder / "own.conf").string(), "-o", (folder / "own.pos").string()};
   int number = 0;
   for (const auto* group : {&g.rover, &g.base, &g.navigation}) {
     for (const auto& f : *group) {
-      const fs::path plain = folder / std::to_string(number++);
-      if (std::system(("zstd -qdcf " + f.path.string() + " > " + plain.string()).c_str()) != 0) std::exit(2);
-      arguments.push_back(plain.string());
+      arguments.push_back((folder / std::to_string(number++)).string());
+      std::ofstream(arguments.back(), std::ios::binary) << need(io::read_text(f.path));
     }
   }
-  arguments.push_back("-r");
-  for (int k = 0; k < 3; ++k) arguments.push_back(std::to_string((*g.base_ecef)[k]));
-  need(run_process(*find_program("rnx2rtkp"), arguments, [](std::string_view) { return true; }));
+  need(run_process(*program, arguments, [](std::string_view) { return true; }));
   const auto own = io::read_gnss({.table = {.path = folder / "own.pos"}, .format = io::GnssFile::Format::rtklib});
-  std::size_t same = 0;
-  double largest = 0.0;
+  Agreement a{.epochs = need(own).series.size()};
   for (const auto& s : need(ours).series) {
-    const std::size_t i = need(own).series.lower_bound(s.time);
+    const std::size_t i = own->series.lower_bound(s.time);
     if (i == own->series.size() || own->series[i].time != s.time) continue;
-    same += own->series[i].fix == s.fix;
-    largest = std::max(largest, (ecef(own->series[i]) - ecef(s)).norm());
+    const double apart = (ecef(own->series[i]) - ecef(s)).norm();
+    a.same += own->series[i].fix == s.fix && apart < 0.3e-3;
+    a.largest = std::max(a.largest, apart);
   }
   fs::remove_all(folder);
-  return {same, largest};
+  return a;
 }
 
 void gnss_sets(const fs::path& data) {
   const auto in = [&](const char* name) { return app::InputPath{data / name, name}; };
   std::vector<Set> sets(3);
-  sets[0] = {.name = "Spirent, static, 2 km, GPS and Galileo", .systems = "G,E"};
+  sets[0] = {.name = "Spirent, static, 2 km, GPS and Galileo"};
   sets[0].job.rover = {in("spirent-static-2km/Rover-static-2km-east_MO_Spirent.obs.zst")};
   sets[0].job.base = {in("spirent-static-2km/Base-static_MO_Spirent.obs.zst")};
   sets[0].job.navigation = {in("spirent-static-2km/RINEX_GN_Spirent.23N.zst"),
                             in("spirent-static-2km/RINEX_EN_Spirent.23L.zst")};
   sets[0].job.base_ecef = Eigen::Vector3d(4157177.06580187, 671230.476590636, 4774767.03105544);
+  sets[0].job.options.systems = {"GPS", "Galileo"};
   sets[0].truth = Eigen::Vector3d(4156857.1195929, 673209.028774142, 4774767.03105544);
-  sets[1] = {.name = "GEONET, static, 3.3 km, GPS", .systems = "G"};
+  sets[1] = {.name = "GEONET, static, 3.3 km, GPS"};
   sets[1].job.rover = {in("geonet-0759-3040/07590920.05o")};
   sets[1].job.base = {in("geonet-0759-3040/30400920.05o")};
   sets[1].job.navigation = {in("geonet-0759-3040/07590920.05n")};
   sets[1].job.base_ecef = Eigen::Vector3d(-3978241.958, 3382840.234, 3649900.853);
+  sets[1].job.options.systems = {"GPS"};
   sets[1].truth = Eigen::Vector3d(-3976219.1868, 3382371.6036, 3652511.1412);  // mean of RTKLIB as documented
-  sets[2] = {.name = "Fujisawa, moving, 5.4 km", .systems = "G,E,R"};
+  sets[2] = {.name = "Fujisawa, moving, 5.4 km"};
   sets[2].job.rover = {in("moving-rover-fujisawa/SEPT265G.21O.zst")};
   sets[2].job.base = {in("moving-rover-fujisawa/3034265G.21O.zst")};
   sets[2].job.navigation = {in("moving-rover-fujisawa/SEPT2650.21P.zst")};
   sets[2].job.base_ecef = Eigen::Vector3d(-3959400.631, 3385704.533, 3667523.111);
   std::printf(
       "\n### GNSS\n\n| set | epochs | fixed | confirmed | doubted | mean off (x, y, z; 3-D), mm | RMS (x, y, z), mm | "
-      "own sigma (n, e, d), mm | same fix as rnx2rtkp, largest difference, mm "
+      "own sigma (n, e, d), mm | equal to rnx2rtkp, largest difference, mm "
       "|\n|---|---|---|---|---|---|---|---|---|\n");
   for (Set& set : sets) {
-    if (set.systems == "G") set.job.options.systems = {"GPS"};
-    if (set.systems == "G,E") set.job.options.systems = {"GPS", "Galileo"};
     SilentProgress progress;
     SilentLog log;
     const auto r = app::process_gnss(set.job, progress, log);
@@ -172,8 +184,9 @@ void gnss_sets(const fs::path& data) {
     } else {
       std::printf("no truth | | ");
     }
-    const auto [same, largest] = against_rtklib(set);
-    std::printf("%.1f, %.1f, %.1f | %zu, %.2f |\n", sigma.x(), sigma.y(), sigma.z(), same, 1e3 * largest);
+    const Agreement a = against_rtklib(set);
+    std::printf("%.1f, %.1f, %.1f | %zu of %zu, %.2f |\n", sigma.x(), sigma.y(), sigma.z(), a.same, a.epochs,
+                1e3 * a.largest);
   }
 }
 
@@ -181,7 +194,12 @@ void gnss_sets(const fs::path& data) {
 
 int main(int argc, char** argv) {
   if (argc < 2) return std::printf("versine_positioning_real DATA_FOLDER\n"), 2;
-  total_station(fs::path(argv[1]) / "total-station" / "network.GSI");
-  gnss_sets(fs::path(argv[1]) / "rinex");
+  try {
+    total_station(fs::path(argv[1]) / "total-station" / "network.GSI");
+    gnss_sets(fs::path(argv[1]) / "rinex");
+  } catch (const Failure& f) {
+    std::fprintf(stderr, "%s\n", f.message.c_str());
+    return 1;
+  }
   return 0;
 }

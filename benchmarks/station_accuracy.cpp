@@ -21,6 +21,11 @@ namespace {
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
+/// An error ends the program with its message (main).
+struct Failure {
+  std::string message;
+};
+
 struct Program {
   app::SimulateConfig config;
   std::shared_ptr<const simulation::World> world;
@@ -34,7 +39,7 @@ app::SurveyConfig job_of(const Program& p, const app::SimulateConfig& config, co
   const auto done = app::parse_config(
       app::survey_job_for(config, r, false), std::filesystem::absolute(p.path),
       [&](app::ConfigVisitor& v) { describe(v, job); }, p.overrides);
-  if (!done) std::printf("%s\n", done.error().message().c_str()), std::exit(2);
+  if (!done) throw Failure{done.error().message()};
   job.estimator.imu_errors = *job.imu_errors.errors();
   return job;
 }
@@ -168,7 +173,7 @@ void survey_table(const Program& p, int seeds) {
       fusion::AidedInsInput in{.imu = r.imu, .odometer = r.odometers.front()};
       in.landmarks.samples = *landmarks;
       const auto solved = fusion::run_aided_ins(in, job.estimator, progress, log);
-      if (!solved) std::printf("%s\n", solved.error().message().c_str()), std::exit(1);
+      if (!solved) throw Failure{solved.error().message()};
       runs->add(*app::compare_trajectories(solved->solution.smoothed, r.truth.trajectory));
     }
     std::fprintf(stderr, "survey %d of %d\r", seed + 1, seeds);
@@ -181,24 +186,7 @@ void survey_table(const Program& p, int seeds) {
   readings.print("raw readings, position and attitude");
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  if (argc < 2) return std::printf("versine_station_accuracy SCENARIO.toml [SEEDS] [SURVEYS] [key=value ...]\n"), 2;
-  const int seeds = argc > 2 ? std::atoi(argv[2]) : 60, surveys = argc > 3 ? std::atoi(argv[3]) : 6;
-  Program p{.path = argv[1]};
-  std::vector<std::string> simulated;
-  for (int i = 4; i < argc; ++i) {
-    const std::string text = argv[i];
-    text.starts_with("sim:") ? simulated.push_back(text.substr(4)) : p.overrides.push_back(text);
-  }
-  auto config = app::read_simulate_config(p.path, simulated);
-  if (!config) return std::printf("%s\n", config.error().message().c_str()), 2;
-  p.config = std::move(*config);
-  const auto world = simulation::prepare(p.config.scenario);
-  if (!world) return std::printf("%s\n", world.error().message().c_str()), 2;
-  p.world = *world;
-
+void stationing_tables(const Program& p, int seeds) {
   std::printf("%s, %d surveys\n\n", p.config.title.c_str(), seeds);
   std::vector<std::pair<std::string, Tally>> rows;
   for (int targets = 5; targets <= 8; ++targets) {
@@ -219,6 +207,31 @@ int main(int argc, char** argv) {
       "\n| back-sights, blunders | RMS roll, pitch, yaw, \" | own sigma, \" | in 1.96 sigma | NEES/3 |\n"
       "|---|---|---|---|---|\n");
   for (const auto& [name, t] : rows) print_attitude(name.c_str(), t);
-  if (surveys > 0) survey_table(p, surveys);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) return std::printf("versine_station_accuracy SCENARIO.toml [SEEDS] [SURVEYS] [key=value ...]\n"), 2;
+  const int seeds = argc > 2 ? std::atoi(argv[2]) : 60, surveys = argc > 3 ? std::atoi(argv[3]) : 6;
+  Program p{.path = argv[1]};
+  std::vector<std::string> simulated;
+  for (int i = 4; i < argc; ++i) {
+    const std::string text = argv[i];
+    text.starts_with("sim:") ? simulated.push_back(text.substr(4)) : p.overrides.push_back(text);
+  }
+  auto config = app::read_simulate_config(p.path, simulated);
+  if (!config) return std::fprintf(stderr, "%s\n", config.error().message().c_str()), 2;
+  p.config = std::move(*config);
+  const auto world = simulation::prepare(p.config.scenario);
+  if (!world) return std::fprintf(stderr, "%s\n", world.error().message().c_str()), 2;
+  p.world = *world;
+  try {
+    if (seeds > 0) stationing_tables(p, seeds);
+    if (surveys > 0) survey_table(p, surveys);
+  } catch (const Failure& f) {
+    std::fprintf(stderr, "%s\n", f.message.c_str());
+    return 1;
+  }
   return 0;
 }

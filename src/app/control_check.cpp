@@ -84,6 +84,7 @@ Expected<ControlCheck> check_control(const StationingOutcome& stations, const St
   if (processing.arrangement == StationingProcessing::Arrangement::on_trolley) {
     for (auto& l : input.landmarks.samples) {
       l.covariance += weak * weak * Eigen::Matrix3d::Identity();
+      l.shared.reset();  // the control points' errors are unknowns of the network
       l.q_ns.reset();
     }
     options.chain_rate = 1.0;

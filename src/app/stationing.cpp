@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <map>
 
+#include "station_landmarks.hpp"
 #include "versine/geodesy/attitude.hpp"
 #include "versine/io/total_station_readings.hpp"
 
@@ -14,54 +15,6 @@ namespace versine::app {
 namespace {
 
 using stationing::StationResult;
-
-Duration half(Time from, Time to) {
-  return {(to - from).ns / 2};
-}
-
-/// A place in the survey frame with its covariance, as a landmark.
-sensors::LandmarkSample landmark_at(const std::string& name, Time from, Time to, const Eigen::Vector3d& place,
-                                    const Eigen::Matrix3d& covariance, const geodesy::LocalFrame& frame) {
-  sensors::LandmarkSample l{.time = from + half(from, to), .from = from, .to = to, .name = name};
-  l.position = frame.to_geodetic(place);
-  const Eigen::Matrix3d to_n = frame.rotation_from(l.position).transpose();
-  l.covariance = to_n * covariance * to_n.transpose();
-  return l;
-}
-
-void add_station(const StationResult& s, const StationingProcessing& p, StationingOutcome& out) {
-  if (!s.from || !s.to) return;
-  auto l = landmark_at(s.name, *s.from, *s.to, s.position, s.covariance.topLeftCorner<3, 3>(), out.frame);
-  if (p.mounting) {
-    const Eigen::Matrix3d to_n = out.frame.rotation_from(l.position).transpose();
-    l.q_ns = Eigen::Quaterniond(to_n * s.q_ms.toRotationMatrix()).normalized();
-    l.attitude_covariance = to_n * s.covariance.block<3, 3>(3, 3) * to_n.transpose();
-    // The station's correction of the position is the negative error.
-    l.position_attitude = -to_n * s.covariance.block<3, 3>(0, 3) * to_n.transpose();
-    // The mounting's error is the same at all stations; as noise of n stations its variance must count n times.
-    const double n = static_cast<double>(out.run.stations.size());
-    l.attitude_covariance += n * p.mounting_sigma * p.mounting_sigma * Eigen::Matrix3d::Identity();
-  }
-  out.landmarks.push_back(std::move(l));
-}
-
-/// Sightings of the trolley's prism leave the station and become stations of one target each.
-std::vector<stationing::Stationing> take_prism(stationing::Stationing& s, const std::string& prism) {
-  std::vector<stationing::Stationing> stops;
-  for (const auto& r : s.sightings) {
-    if (r.point != prism || !r.from || !r.to) continue;
-    const bool same = !stops.empty() && stops.back().from == r.from;
-    if (!same) {
-      stops.push_back({.name = fmt::format("{}/{}", s.name, stops.size() + 1),
-                       .atmosphere = s.atmosphere,
-                       .from = r.from,
-                       .to = r.to});
-    }
-    stops.back().sightings.push_back(r);
-  }
-  std::erase_if(s.sightings, [&](const auto& r) { return r.point == prism; });
-  return stops;
-}
 
 void note_results(StationingOutcome& out) {
   for (const auto& f : out.run.failed) {
@@ -146,25 +99,13 @@ StationingOutcome compute_landmarks(std::vector<stationing::Stationing> stationi
   out.frame = frame;
   out.network = std::move(network);
   const bool beside = p.arrangement == StationingProcessing::Arrangement::beside;
-  std::map<std::string, std::vector<stationing::Stationing>> stops;
+  PrismStops stops;
   for (auto& s : stationings) {
     if (beside) stops[s.name] = take_prism(s, p.prism);
     if (auto r = stationing::reduce(s, p.instrument)) out.reduced.push_back(std::move(*r));
   }
   out.run = stationing::compute_stations(stationings, out.network, p.instrument, p.options, progress);
-  for (const StationResult& s : out.run.stations) {
-    if (!beside) {
-      add_station(s, p, out);
-      continue;
-    }
-    for (const auto& stop : stops[s.name]) {
-      const auto target = stationing::reduce(stop, p.instrument);
-      if (!target || target->targets.empty() || std::isnan(target->targets[0].distance)) continue;
-      const auto place = stationing::locate(s, target->targets[0], p.instrument);
-      out.landmarks.push_back(landmark_at(stop.name, *stop.from, *stop.to, place.position, place.covariance, frame));
-    }
-  }
-  std::sort(out.landmarks.begin(), out.landmarks.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+  out.landmarks = beside ? prism_landmarks(out, stops, p) : station_landmarks(out, p);
   note_results(out);
   return out;
 }

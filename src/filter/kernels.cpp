@@ -33,6 +33,7 @@ bool rts_gain(const StateMatrix<N>& P, const Transition<N>& phi, StateMatrix<N>&
 template bool rts_gain<23>(const StateMatrix<23>&, const Transition<23>&, StateMatrix<23>&, StateMatrix<23>&);
 template bool rts_gain<25>(const StateMatrix<25>&, const Transition<25>&, StateMatrix<25>&, StateMatrix<25>&);
 template bool rts_gain<26>(const StateMatrix<26>&, const Transition<26>&, StateMatrix<26>&, StateMatrix<26>&);
+template bool rts_gain<29>(const StateMatrix<29>&, const Transition<29>&, StateMatrix<29>&, StateMatrix<29>&);
 template bool rts_gain<Eigen::Dynamic>(const StateMatrix<Eigen::Dynamic>&, const Transition<Eigen::Dynamic>&,
                                        StateMatrix<Eigen::Dynamic>&, StateMatrix<Eigen::Dynamic>&);
 

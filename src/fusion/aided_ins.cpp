@@ -76,7 +76,7 @@ Expected<AidedInsResult> run_aided_ins(const AidedInsInput& input, const AidedIn
                                        Log& log, RunWatch* watch) {
   if (const auto checked = check(input, options); !checked) return fail(checked.error());
   AidedInsResult result;
-  const InsLayout layout = InsLayout::from(options);
+  const InsLayout layout = InsLayout::from(options, input.landmarks);
   result.solution.error_names.assign(layout.names.begin() + filter::moving, layout.names.end());
   result.solution.smoothed.scale = result.solution.forward.scale = input.imu.scale;
   result.solution.smoothed.origin = "aided INS, smoothed";
@@ -98,8 +98,9 @@ Expected<AidedInsResult> run_aided_ins(const AidedInsInput& input, const AidedIn
                          start->alignment.sigma.z() / units::deg));
     Expected<Previous> left = layout.size() == 23   ? detail::run_segment<23>(context, segment, *start, number)
                               : layout.size() == 25 ? detail::run_segment<25>(context, segment, *start, number)
-                              : layout.size() == 26
-                                  ? detail::run_segment<26>(context, segment, *start, number)
+                              : layout.size() == 26 ? detail::run_segment<26>(context, segment, *start, number)
+                              : layout.size() == 29
+                                  ? detail::run_segment<29>(context, segment, *start, number)
                                   : detail::run_segment<Eigen::Dynamic>(context, segment, *start, number);
     if (!left) return fail(left.error());
     previous = std::move(*left);

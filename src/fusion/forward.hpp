@@ -55,6 +55,10 @@ class Forward {
 
   void begin(const Segment&, const Start& start, Steps& out) {
     judge_.begin_segment(start.estimate.nav.time);
+    // The segment before hands over what its last landmark shares.
+    for (std::size_t i = in_.landmarks.lower_bound({start.estimate.nav.time.ns + 1}); i-- > 0 && !shared_place_;) {
+      if (in_.landmarks[i].shared) shared_place_ = in_.landmarks[i].shared->place;
+    }
     moment_.estimate = start.estimate;
     refresh();
     P_ = start.covariance;
@@ -97,9 +101,16 @@ class Forward {
     // The estimate fades as its error does (NoiseModel), or the filter believes in a bias that is long gone.
     if (l_.gnss_bias.enabled()) e.gnss_bias *= std::exp(-dt_ / o_.gnss_bias_time);
 
+    const Eigen::Matrix<float, 6, 1> kept = shared_kept(events);
+    e.landmark_error.array() *= kept.array().cast<double>();
+
     const double rocking = changed ? o_.zero_position_sigma * o_.zero_position_sigma : 0.0;
-    step_.noise = {dt_, way_, static_cast<float>(std::exchange(lost_position_, 0.0) + rocking),
-                   static_cast<float>(std::exchange(lost_velocity_, 0.0)), !distance_known_ || restart_distance_};
+    step_.noise = {dt_,
+                   way_,
+                   static_cast<float>(std::exchange(lost_position_, 0.0) + rocking),
+                   static_cast<float>(std::exchange(lost_velocity_, 0.0)),
+                   kept,
+                   !distance_known_ || restart_distance_};
     const auto reading =
         std::find_if(events.begin(), events.end(), [&](const Event& x) { return x.kind == Event::Kind::odometer; });
     if (reading != events.end() && step_.noise.new_distance) {
@@ -112,6 +123,18 @@ class Forward {
     pack_transition<N>(transition_, out.arena, step_);
     step_.first_row = out.rows.size();
     step_.rows = 0;
+  }
+
+  /// What a landmark among the events keeps of the error that those before it had in common.
+  [[nodiscard]] Eigen::Matrix<float, 6, 1> shared_kept(std::span<const Event> events) {
+    Eigen::Matrix<float, 6, 1> kept = Eigen::Matrix<float, 6, 1>::Ones();
+    for (const Event& x : events) {
+      if (x.kind != Event::Kind::landmark || !in_.landmarks[x.index].shared) continue;
+      const auto& place = in_.landmarks[x.index].shared->place;
+      if (shared_place_) kept = (*shared_place_ - place).array().exp().cast<float>();
+      shared_place_ = place;
+    }
+    return kept;
   }
 
   /// The rows of position, velocity and attitude from the accumulated matrices; the row of the distance from its rate
@@ -311,6 +334,7 @@ class Forward {
   bool distance_known_ = false, anchored_ = false, restart_distance_ = false, standing_ = false, report_done_ = false,
        held_ = false, odometer_in_hold_ = false;
   std::size_t standstill_ = 0;
+  std::optional<Eigen::Matrix<double, 6, 1>> shared_place_;  ///< of the landmark before
   Time last_speed_{INT64_MIN / 2}, last_zero_{INT64_MIN / 2}, last_constraint_{INT64_MIN / 2};
 };
 

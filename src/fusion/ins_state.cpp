@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "versine/fusion/ins_state.hpp"
 
+#include <algorithm>
+
 #include "versine/geodesy/attitude.hpp"
 #include "versine/geodesy/ellipsoid.hpp"
 
 namespace versine::fusion {
 
-InsLayout InsLayout::from(const AidedInsOptions& o) {
+InsLayout InsLayout::from(const AidedInsOptions& o, const Series<sensors::LandmarkSample>& landmarks) {
   filter::Assembler a;
   InsLayout l;
   l.position = a.add<3>("position", "ned");
@@ -25,6 +27,14 @@ InsLayout InsLayout::from(const AidedInsOptions& o) {
   if (o.gnss_lever.sigma > 0.0) l.gnss_lever = a.add<3>("gnss_lever", "xyz");
   if (o.wheel_lever.sigma > 0.0) l.wheel_lever = a.add<3>("wheel_lever", "xyz");
   if (o.gnss_bias > 0.0) l.gnss_bias = a.add<3>("gnss_bias", "ned");
+  const auto shares = [](const sensors::LandmarkSample& s) { return s.shared.has_value(); };
+  const auto shares_attitude = [](const sensors::LandmarkSample& s) { return s.shared && s.q_ns; };
+  if (std::any_of(landmarks.samples.begin(), landmarks.samples.end(), shares)) {
+    l.landmark_position = a.add<3>("landmark_error", "123");
+    if (std::any_of(landmarks.samples.begin(), landmarks.samples.end(), shares_attitude)) {
+      l.landmark_attitude = a.add<3>("landmark_error", "456");
+    }
+  }
   l.names = a.names();
   return l;
 }
@@ -48,6 +58,8 @@ InsEstimate without_error(const InsEstimate& estimate, const InsLayout& l, const
   if (l.gnss_lever.enabled()) e.gnss_lever += part(l.gnss_lever);
   if (l.wheel_lever.enabled()) e.wheel_lever += part(l.wheel_lever);
   if (l.gnss_bias.enabled()) e.gnss_bias += part(l.gnss_bias);
+  if (l.landmark_position.enabled()) e.landmark_error.head<3>() += part(l.landmark_position);
+  if (l.landmark_attitude.enabled()) e.landmark_error.tail<3>() += part(l.landmark_attitude);
   return e;
 }
 

@@ -25,6 +25,7 @@ template <int N>
 extern template Expected<Previous> run_segment<23>(const RunContext&, const Segment&, const Start&, std::int32_t);
 extern template Expected<Previous> run_segment<25>(const RunContext&, const Segment&, const Start&, std::int32_t);
 extern template Expected<Previous> run_segment<26>(const RunContext&, const Segment&, const Start&, std::int32_t);
+extern template Expected<Previous> run_segment<29>(const RunContext&, const Segment&, const Start&, std::int32_t);
 extern template Expected<Previous> run_segment<Eigen::Dynamic>(const RunContext&, const Segment&, const Start&,
                                                                std::int32_t);
 

@@ -92,6 +92,8 @@ inline Eigen::VectorXf parameter_values(const InsEstimate& e, const InsLayout& l
   set(l.gnss_lever, e.gnss_lever);
   set(l.wheel_lever, e.wheel_lever);
   set(l.gnss_bias, e.gnss_bias);
+  set(l.landmark_position, e.landmark_error.head<3>());
+  set(l.landmark_attitude, e.landmark_error.tail<3>());
   return v.tail(l.size() - filter::moving);
 }
 

@@ -194,6 +194,8 @@ Eigen::VectorXd initial_sigma(const AidedInsOptions& o, const InsLayout& l, cons
   set(l.gnss_lever, o.gnss_lever.sigma);
   set(l.wheel_lever, o.wheel_lever.sigma);
   if (l.gnss_bias.enabled()) sigma.segment<3>(l.gnss_bias.offset) = o.gnss_bias_sigma();
+  set(l.landmark_position, 1.0);
+  set(l.landmark_attitude, 1.0);
   return sigma;
 }
 /// A level taken from the accelerometers is off by their bias, and a heading taken from the gyros by theirs: the same

@@ -12,10 +12,12 @@ namespace versine::fusion::detail {
 
 /// What makes the noise and the decay of a step, kept instead of them.
 struct StepNoise {
-  double dt = 0.0;           ///< s
-  double way = 0.0;          ///< m travelled
-  float position = 0.0F;     ///< m^2 added: rocking where a standstill begins or ends, and lost trust in the filter
-  float velocity = 0.0F;     ///< (m/s)^2 added after the filter lost trust in itself
+  double dt = 0.0;        ///< s
+  double way = 0.0;       ///< m travelled
+  float position = 0.0F;  ///< m^2 added: rocking where a standstill begins or ends, and lost trust in the filter
+  float velocity = 0.0F;  ///< (m/s)^2 added after the filter lost trust in itself
+  /// Where a landmark ends the step: how much of the landmarks' shared error stays; 1 elsewhere.
+  Eigen::Matrix<float, 6, 1> shared_kept = Eigen::Matrix<float, 6, 1>::Ones();
   bool new_distance = true;  ///< the odometer's distance starts anew (or is not in use): nothing of its past is kept
 };
 
@@ -50,6 +52,15 @@ class NoiseModel {
       t.noise.template segment<3>(l_.gnss_bias.offset) =
           o_.gnss_bias_sigma().cwiseAbs2() * (2.0 * (1.0 - decay * decay) / (1.0 + decay * decay));
     }
+    const auto fade = [&](auto block, int first) {
+      for (int i = 0; block.enabled() && i < 3; ++i) {
+        const double kept = double{s.shared_kept[first + i]}, square = kept * kept;
+        t.decay[block.offset + i] = kept;
+        t.noise[block.offset + i] = 2.0 * (1.0 - square) / (1.0 + square);
+      }
+    };
+    fade(l_.landmark_position, 0);
+    fade(l_.landmark_attitude, 3);
   }
 
  private:

@@ -46,13 +46,28 @@ class Solver {
     search_.adjustment.pose = matching->pose;
     result_.excluded = std::move(matching->excluded);
     result_.warnings.insert(result_.warnings.end(), matching->warnings.begin(), matching->warnings.end());
+    if (options_.left_out) take_out();
     if (auto ok = refine(); !ok) return tl::unexpected(ok.error());
-    snoop();
-    readmit();
+    if (!options_.left_out) {
+      snoop();
+      readmit();
+    }
     return finish();
   }
 
  private:
+  /// Everything is used but what is decided to be left out.
+  void take_out() {
+    auto all = std::move(search_.used);
+    all.insert(all.end(), search_.left_out.begin(), search_.left_out.end());
+    search_.used.clear(), search_.left_out.clear();
+    for (const Candidate& c : all) {
+      const auto target = static_cast<std::size_t>(c.target - station_.targets.data());
+      const bool out = std::count(options_.left_out->begin(), options_.left_out->end(), target) > 0;
+      (out ? search_.left_out : search_.used).push_back(c);
+    }
+  }
+
   void observe_used() {
     search_.observations.clear();
     for (const Candidate& c : search_.used) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 
+#include "joint_snooping.hpp"
 #include "versine/stationing/free_station.hpp"
 
 namespace versine::stationing {
@@ -33,20 +34,12 @@ std::vector<MovedPoint> find_moved(const std::vector<StationResult>& stations) {
   return moved;
 }
 
-bool uses(const StationResult& s, const std::string& point) {
-  return std::any_of(s.targets.begin(), s.targets.end(), [&](const TargetResult& t) { return t.point == point; });
-}
-
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 }  // namespace
 
 StationingRun compute_stations(std::span<const Stationing> stationings, const ControlNetwork& network,
                                const Instrument& instrument, const FreeStationOptions& options, Progress& progress) {
   StationingRun run;
-  std::map<std::string, ReducedStation> reduced;
+  std::vector<ReducedStation> readings;  // of each solved station
   for (std::size_t i = 0; i < stationings.size(); ++i) {
     if (progress.cancelled()) break;
     progress.report("free stationing", static_cast<double>(i) / static_cast<double>(stationings.size()));
@@ -58,29 +51,24 @@ StationingRun compute_stations(std::span<const Stationing> stationings, const Co
       run.failed.push_back({s.name, s.from, s.to, solved.error()});
       continue;
     }
-    reduced[s.name] = std::move(*r);
+    readings.push_back(std::move(*r));
     run.stations.push_back(std::move(*solved));
   }
-  run.moved = find_moved(run.stations);
-  if (run.moved.empty()) return run;
-
-  std::vector<std::string> names;
-  for (const MovedPoint& m : run.moved) names.push_back(m.name);
-  const ControlNetwork rest = network.without(names);
-  for (StationResult& s : run.stations) {
-    const bool affected = std::any_of(names.begin(), names.end(), [&](const auto& n) { return uses(s, n); });
-    if (affected) {
-      ReducedStation without = reduced[s.name];
-      std::erase_if(without.targets, [&](const Target& t) { return contains(names, t.point); });
-      if (auto again = free_station(without, rest, instrument, options)) {
-        for (const Target& t : reduced[s.name].targets) {
-          if (contains(names, t.point)) again->excluded.push_back({.point = t.point});
-        }
-        s = std::move(*again);
-      }
+  std::vector<SolvedStation> solved;
+  for (std::size_t i = 0; i < readings.size(); ++i) solved.push_back({&readings[i], &run.stations[i]});
+  const JointVerdict verdict = snoop_jointly(solved, network, find_moved(run.stations), instrument, options);
+  run.moved = verdict.moved;
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    StationResult& s = run.stations[i];
+    if (verdict.changed[i]) {
+      FreeStationOptions decided = options;
+      decided.left_out.emplace(verdict.left_out[i].begin(), verdict.left_out[i].end());
+      if (auto again = free_station(readings[i], network, instrument, decided)) s = std::move(*again);
     }
     for (Exclusion& e : s.excluded) {
-      if (contains(names, e.point)) e.reason = Exclusion::Reason::moved;
+      const bool moved =
+          std::any_of(run.moved.begin(), run.moved.end(), [&](const auto& m) { return m.name == e.point; });
+      if (moved && e.reason == Exclusion::Reason::blunder) e.reason = Exclusion::Reason::moved;
     }
   }
   return run;

@@ -56,6 +56,7 @@ TargetResult test_target(const Candidate& c, const Observation& o, const Adjustm
       r.point_test += part * part / eigen.eigenvalues()(k);
     }
   }
+  r.gain = (a.covariance * a.jacobian[i].transpose() * a.jacobian[i]).topLeftCorner<6, 3>();
   const Eigen::Matrix3d unwhiten = o.whitening.inverse();
   r.residual = unwhiten * a.whitened[i];
   r.redundancy = (unwhiten * block * o.whitening).diagonal();

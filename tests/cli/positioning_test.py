@@ -2,6 +2,7 @@
 """Positioning from what the instruments wrote: bad input is refused with the cure (exit code 2)."""
 import json
 import math
+import os
 import shutil
 import subprocess
 import sys
@@ -119,10 +120,39 @@ class TotalStation(Case):
         self.refuses("easting and northing", more=("--set", "total_station.identify=false"))
 
 
-@unittest.skipUnless(shutil.which("rnx2rtkp"), "RTKLIB's rnx2rtkp is not installed")
+class OneChange(Case):
+    """Positions or raw readings: one table of the job, as the simulated job itself shows."""
+    SHORT = ["--set", "motion.leg=[{to_m=260.0, speed_kmh=3.6, stop_s=40.0, stop_every_m=60.0, stop_each_s=40.0}]"]
+
+    def errors(self, result):
+        self.good("survey", "recording/survey.toml", "-o", result)
+        told = json.loads(self.good("compare", result, "recording/truth_trajectory.csv", "--json"))
+        return {name: told[name]["rms"] for name in ("along", "across", "up")}
+
+    def test_positions_and_readings_are_one_change_in_the_job(self):
+        self.good("simulate", SOURCE / "examples/scenarios/slab-1km.toml", "-o", "recording", *self.SHORT)
+        readings = self.errors("by_readings")
+
+        def to_positions(text):
+            before, rest = text.split("[total_station]", 1)
+            after = rest[rest.index("# [landmarks]"):].splitlines()
+            return before + "\n".join(line.removeprefix("# ") for line in after) + "\n"
+        self.edit("recording/survey.toml", to_positions)
+        positions = self.errors("by_positions")
+        for name in readings:
+            self.assertLess(readings[name], 1.0, name)  # mm
+            self.assertLess(positions[name], 1.0, name)  # mm
+            self.assertLess(readings[name], 1.5 * positions[name] + 0.1, name)
+
+
+RTKLIB = shutil.which("rnx2rtkp") is not None
+
+
+@unittest.skipUnless(RTKLIB or "CI" in os.environ, "RTKLIB's rnx2rtkp is not installed")
 class Gnss(Case):
     def setUp(self):
         super().setUp()
+        self.assertTrue(RTKLIB, "rnx2rtkp is missing, and CI must have it")
         done = subprocess.run([sys.executable, "-B", SOURCE / "benchmarks/rinex_hour.py", self.folder, "40"], check=True,
                               capture_output=True, text=True)
         self.assertEqual(done.returncode, 0)

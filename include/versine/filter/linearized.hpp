@@ -4,7 +4,7 @@
 
 namespace versine::filter {
 
-inline constexpr int max_states = 36;
+inline constexpr int max_states = 40;
 inline constexpr int max_rows = 6;
 
 /// A measurement seen from a filter: `z = H x + n`, cov(n) = R, with x the error state. For the aided INS z is

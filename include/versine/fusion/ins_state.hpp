@@ -17,10 +17,14 @@ struct InsLayout {
   filter::Block<1> odometer_scale;
   filter::Block<2> mounting;  ///< pitch and yaw: small rotation of v about its right and down axes
   filter::Block<3> gnss_lever, wheel_lever, gnss_bias;
+  /// What the landmarks' errors share (sensors::SharedError): of positions, and with attitudes of these too. Unit
+  /// variance.
+  filter::Block<3> landmark_position, landmark_attitude;
   std::vector<std::string> names;
 
   [[nodiscard]] int size() const { return static_cast<int>(names.size()); }
-  [[nodiscard]] static InsLayout from(const AidedInsOptions& options);
+  [[nodiscard]] static InsLayout from(const AidedInsOptions& options,
+                                      const Series<sensors::LandmarkSample>& landmarks = {});
 };
 
 /// Best estimate of everything that the error states are errors of.
@@ -31,7 +35,8 @@ struct InsEstimate {
   double odometer_scale = 0.0;  ///< the odometer shows (1 + scale) times the way
   Eigen::Matrix3d C_vb = Eigen::Matrix3d::Identity();
   Eigen::Vector3d gnss_lever = Eigen::Vector3d::Zero(), wheel_lever = Eigen::Vector3d::Zero();
-  Eigen::Vector3d gnss_bias = Eigen::Vector3d::Zero();  ///< n-frame, m
+  Eigen::Vector3d gnss_bias = Eigen::Vector3d::Zero();                               ///< n-frame, m
+  Eigen::Matrix<double, 6, 1> landmark_error = Eigen::Matrix<double, 6, 1>::Zero();  ///< u of sensors::SharedError
 };
 
 /// What holds at the moment of a measurement besides the estimate.

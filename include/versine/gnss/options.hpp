@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "versine/core/units.hpp"
+
 namespace versine::gnss {
 
 enum class Positioning {
@@ -28,11 +30,11 @@ struct Options {
   Ambiguities ambiguities = Ambiguities::continuous;
   std::vector<std::string> systems = {"GPS", "Galileo", "GLONASS"};  ///< also "BeiDou", "QZSS", "SBAS"
   int frequencies = 2;                                               ///< 1: L1, 2: L1+L2 (E5b), 3: L1+L2+L5
-  double elevation_mask = 0.2618;                                    ///< rad
+  double elevation_mask = 15.0 * units::deg;                         ///< rad
   double snr_mask = 0.0;                                             ///< dB-Hz, at all elevations; 0: none
   double ratio = 3.0;                                                ///< of the second best to the best ambiguities
   int lock_epochs = 5;                       ///< that a satellite must be tracked before its ambiguity is fixed
-  double fix_elevation = 0.2618;             ///< below it ambiguities are not fixed, rad
+  double fix_elevation = 15.0 * units::deg;  ///< below it ambiguities are not fixed, rad
   bool glonass_ambiguities = false;          ///< only between receivers of one make
   bool dynamics = false;                     ///< velocity and acceleration as states of the filter
   bool interpolate_base = false;             ///< the base has a lower rate than the rover

@@ -57,6 +57,16 @@ struct SpeedSample {
   double speed = 0.0;
 };
 
+/// What a landmark's error has in common with those of its neighbours, because the same control points went into them:
+/// the shared part of the error is `root` u, with u of unit variance. Between two landmarks each element of u is alike
+/// by exp(-|difference of `place`|), a Gauss-Markov process over the survey.
+struct SharedError {
+  /// Rows: position (given minus true, n-frame, m), phi-angle in n (rad). Its square is part of the landmark's
+  /// covariance.
+  Eigen::Matrix<double, 6, 6> root = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> place = Eigen::Matrix<double, 6, 1>::Zero();  ///< never falls along a series
+};
+
 /// A position known from outside while the vehicle stands: a total station on the trolley that found itself between
 /// control points, a prism on the trolley seen from beside the track, or a marked point.
 struct LandmarkSample {
@@ -69,6 +79,7 @@ struct LandmarkSample {
   Eigen::Matrix3d attitude_covariance = Eigen::Matrix3d::Zero();  ///< of the phi-angle in n, rad^2, with q_ns
   /// Of the position's error (given minus true, n) with that phi-angle, m rad: both come from the same readings.
   Eigen::Matrix3d position_attitude = Eigen::Matrix3d::Zero();
+  std::optional<SharedError> shared;  ///< none: independent of all other landmarks
 };
 
 /// Heading from a dual antenna or from a known track azimuth, rad from north clockwise.

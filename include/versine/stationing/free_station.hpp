@@ -22,6 +22,8 @@ struct FreeStationOptions {
   double largest_tilt = 0.35;        ///< of the standing axis against the plumb line, rad
   double wanted_sigma = 1e-3;        ///< of the position, each axis; a worse geometry is called poor, m
   bool identify = true;              ///< targets without or with unknown numbers are found by their coordinates
+  /// Indices of targets that contradict the rest, decided elsewhere: these are left out and no other is.
+  std::optional<std::vector<std::size_t>> left_out;
   std::optional<Eigen::Vector3d> near;  ///< roughly where the station is, m-frame; needed when no number is known and
                                         ///< the network repeats itself
 };
@@ -60,8 +62,10 @@ struct StationingRun {
   std::vector<MovedPoint> moved;
 };
 
-/// All stationings of a survey. Points that two stations or more leave out with agreeing offsets are called moved;
-/// every station that used one of them is computed again without it.
+/// All stationings of a survey: each by itself first, then what contradicts is looked for in all of them together
+/// (neighbouring stations see the same control points, so that a wrong sighting and a moved point can be told apart,
+/// and two targets against two decided). A point that has moved is used by no station; every station whose targets
+/// change is computed again.
 [[nodiscard]] StationingRun compute_stations(std::span<const Stationing> stationings, const ControlNetwork& network,
                                              const Instrument& instrument, const FreeStationOptions& options,
                                              Progress& progress);

@@ -17,6 +17,9 @@ struct TargetResult {
   Eigen::Vector3d normalized = Eigen::Vector3d::Zero();  ///< each residual over its own sigma (Baarda's w)
   Eigen::Vector3d redundancy = Eigen::Vector3d::Zero();  ///< redundancy numbers, 0 to 1
   Eigen::Vector3d detectable = Eigen::Vector3d::Zero();  ///< minimum detectable blunder (alpha 0.1 %, power 80 %), m
+  /// Correction of the station (position m, theta rad, m-frame) per error of the control point's coordinates (truth
+  /// minus given, m): what stations that share the point have in common.
+  Eigen::Matrix<double, 6, 3> gain = Eigen::Matrix<double, 6, 3>::Zero();
   double point_test = 0.0;   ///< normalised size of the whole target's error; chi-square with 3 d.o.f.
   std::size_t readings = 0;  ///< sightings it is the mean of
 };

@@ -48,6 +48,22 @@ filter::Linearized vehicle_heading(const InsMoment& m, const InsLayout& layout, 
   return l;
 }
 
+namespace {
+
+/// The landmark's shared error as states: `first` row of the sample's error, 0 position, 3 attitude. What is left of R
+/// is the landmark's own.
+void add_shared(const InsMoment& m, const InsLayout& layout, const sensors::LandmarkSample& sample, int first,
+                filter::Linearized& l) {
+  if (!sample.shared || !layout.landmark_position.enabled()) return;
+  const auto root = sample.shared->root.middleRows<3>(first);
+  l.z += root * m.estimate.landmark_error;
+  l.H.middleCols<3>(layout.landmark_position.offset) = -root.leftCols<3>();
+  if (layout.landmark_attitude.enabled()) l.H.middleCols<3>(layout.landmark_attitude.offset) = -root.rightCols<3>();
+  l.R -= root * root.transpose();
+}
+
+}  // namespace
+
 filter::Linearized landmark_position(const InsMoment& m, const InsLayout& layout, const sensors::LandmarkSample& sample,
                                      const Vector3d& lever_b) {
   filter::Linearized l(3, layout.size());
@@ -56,6 +72,7 @@ filter::Linearized landmark_position(const InsMoment& m, const InsLayout& layout
   l.H.middleCols<3>(layout.position.offset).setIdentity();
   l.H.middleCols<3>(layout.attitude.offset) = geodesy::skew(lever_n);
   l.R = sample.covariance;
+  add_shared(m, layout, sample, 0, l);
   return l;
 }
 
@@ -67,6 +84,7 @@ filter::Linearized landmark_attitude(const InsMoment& m, const InsLayout& layout
   l.z = geodesy::to_rotation_vector(measured * m.estimate.nav.q_nb.conjugate());
   l.H.middleCols<3>(layout.attitude.offset).setIdentity();
   l.R = sample.attitude_covariance;
+  add_shared(m, layout, sample, 3, l);
   return l;
 }
 
@@ -76,10 +94,14 @@ filter::Linearized landmark_attitude_after_position(const InsMoment& m, const In
   filter::Linearized l = landmark_attitude(m, layout, sample, q_bs);
   const filter::Linearized p = landmark_position(m, layout, sample, lever_b);
   // The part of the attitude's noise that the position's does not share (Bryson and Ho, sequential processing).
-  const Matrix3d K = sample.covariance.llt().solve(sample.position_attitude).transpose();
+  Matrix3d both = sample.position_attitude;
+  if (sample.shared && layout.landmark_position.enabled()) {
+    both -= sample.shared->root.topRows<3>() * sample.shared->root.bottomRows<3>().transpose();
+  }
+  const Matrix3d K = Matrix3d(p.R).llt().solve(both).transpose();
   l.z -= K * p.z;
   l.H -= K * p.H;
-  l.R -= K * sample.position_attitude;
+  l.R -= K * both;
   return l;
 }
 
