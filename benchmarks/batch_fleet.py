@@ -73,6 +73,8 @@ with sqlite3.connect(FOLDER / "catalogue.sqlite") as db:
     journeys, hours = one("SELECT count(*), sum(to_ns - from_ns) / 3.6e12 FROM journey")
     sure = one("SELECT avg(probability > 0.9) FROM journey")[0]
     passes = one("SELECT count(*) FROM pass")[0]
-print(f"\n{journeys} journeys, {hours:.1f} h of them; {100 * sure:.1f} % with a path of more than 0.9; {passes} passes; "
+driven = arguments.recordings * arguments.journeys
+print(f"\n{journeys} journeys of {driven} driven, {hours:.1f} h of them; {100 * sure:.1f} % with a path of more than 0.9; {passes} passes; "
       f"catalogue {(FOLDER / 'catalogue.sqlite').stat().st_size / 2**20:.1f} MiB, store "
       f"{sum(p.stat().st_size for p in (FOLDER / 'store').rglob('*') if p.is_file()) / 2**20:.0f} MiB")
+sys.exit(journeys != driven)

@@ -33,13 +33,16 @@ class Vehicle {
     into_ = 0.5 * graph.length(track_);
   }
 
-  /// To a place some hundred metres on; the other way round where that is nearer to a dead end.
-  void journey() {
+  /// To a place some hundred metres on; the other way round where that is nearer to a dead end. Going on in the
+  /// direction of the movement before, after a halt, is the same journey.
+  void move_on() {
     network::Path path = way();
-    if (network::PathCoordinates(network_, path).length() - into_ < 250.0) {
+    const bool round = network::PathCoordinates(network_, path).length() - into_ < 250.0;
+    if (round) {
       reverse();
       path = way();
     }
+    if (!round || journeys == 0) ++journeys;
     const network::PathCoordinates c(network_, path);
     const double goal = std::min(into_ + 420.0 + 60.0 * normal_(random_), c.length() - 20.0);
     move(c, goal);
@@ -50,6 +53,7 @@ class Vehicle {
   }
 
   simulation::SimulatedRecording recording;
+  int journeys = 0;
 
  private:
   void reverse() {
@@ -157,7 +161,7 @@ int main(int argc, char** argv) {
   double hours = 0.0;
   for (int i = 0; i < recordings; ++i) {
     Vehicle vehicle(*network, graph, static_cast<unsigned>(i + 1));
-    for (int k = 0; k < journeys; ++k) vehicle.journey();
+    while (vehicle.journeys < journeys) vehicle.move_on();
     hours += static_cast<double>(vehicle.recording.imu.size()) / 360'000.0;
     if (argc > 4 && i == 0) {
       const auto& imu = vehicle.recording.imu;

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Georeferencing as a user runs it: a small railway, one vehicle, and every fault that files can have."""
 import csv
+import ctypes
+import ctypes.util
 import json
 import math
 import random
@@ -47,6 +49,32 @@ def fixes(start=1000.0, seed=1, side=lambda x: 8.0 * min(max((x - 800) / 100, 0.
         lat, lon = degrees(x + east + noise.gauss(0, 0.4), side(x) + noise.gauss(0, 0.4))
         yield [start + t, lat, lon, 100.0, 0.5, 0.5, 1.0]
         x, v = x + 0.5 * v + 0.125 * a, max(0.0, v + 0.5 * a)
+
+
+def write_hdf5(path, journeys):
+    """Groups of groups of columns, by the C library: Python has no module of its own for it."""
+    name = ctypes.util.find_library("hdf5_serial") or ctypes.util.find_library("hdf5")
+    if name is None:
+        raise unittest.SkipTest("no HDF5 library")
+    h5 = ctypes.CDLL(name)
+    h5.H5open()
+    double = ctypes.c_int64.in_dll(h5, "H5T_NATIVE_DOUBLE_g")
+    i64, zero = ctypes.c_int64, ctypes.c_int64(0)
+    for function in ("H5Fcreate", "H5Gcreate2", "H5Screate_simple", "H5Dcreate2"):
+        getattr(h5, function).restype = i64
+    file = i64(h5.H5Fcreate(str(path).encode(), ctypes.c_uint(2), zero, zero))
+    for journey, groups in journeys.items():
+        outer = i64(h5.H5Gcreate2(file, journey.encode(), zero, zero, zero))
+        for group, columns in groups.items():
+            inner = i64(h5.H5Gcreate2(outer, group.encode(), zero, zero, zero))
+            for column, values in columns.items():
+                space = i64(h5.H5Screate_simple(1, (ctypes.c_uint64 * 1)(len(values)), None))
+                data = i64(h5.H5Dcreate2(inner, column.encode(), double, space, zero, zero, zero))
+                h5.H5Dwrite(data, double, zero, zero, zero, (ctypes.c_double * len(values))(*values))
+                h5.H5Dclose(data), h5.H5Sclose(space)
+            h5.H5Gclose(inner)
+        h5.H5Gclose(outer)
+    h5.H5Fclose(file)
 
 
 HEAD = ["time_s", "latitude_deg", "longitude_deg", "height_m", "sigma_north_m", "sigma_east_m", "sigma_up_m"]
@@ -217,6 +245,20 @@ class BadInput(Railway):
         found = [f for f in self.findings() if f["kind"] == "time running backwards"]
         self.assertEqual([f["count"] for f in found], [6])
         self.assertIn("record 151", found[0]["detail"])
+
+    def test_hdf5_with_missing_groups(self):
+        good = [[r[k] for r in fixes()] for k in (0, 2, 1, 4)]
+        gnss = dict(zip(("times", "lon", "lat", "accuracy_horizontal"), good))
+        short = {**gnss, "lat": gnss["lat"][:-7]}
+        imu = {"times": gnss["times"], "acc_x": gnss["lat"]}
+        write_hdf5(self.folder / "bad.h5", {"journey_01": {"IMU": imu}, "journey_02": {"GNSS": gnss},
+                                            "journey_03": {"GNSS": gnss, "IMU": imu}, "journey_04": {"GNSS": short}})
+        done = self.versine("georef", "job.toml", "--set", 'recordings=["bad.h5", "ride.csv"]')
+        self.assertEqual(done.returncode, 1, done.stderr)
+        for text in ("bad.h5", "journey_01/GNSS", "journey_03/IMU/acc_y", "journey_04/GNSS/lat"):
+            self.assertIn(text, done.stderr)
+        self.assertEqual([r["name"] for r in self.index()["recordings"]], ["bad.h5:journey_02", "ride.csv"])
+        self.assertEqual([self.tracks(recording=k) for k in (0, 1)], 2 * [["A1", "X", "B3"]])
 
     def test_degrees_without_crs(self):
         text = "".join("{},\"LINESTRING({})\"\n".format(k, ",".join("{1:.9f} {0:.9f}".format(*degrees(*p)) for p in v))
