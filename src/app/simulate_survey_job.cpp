@@ -58,6 +58,7 @@ std::string survey_job_for(const SimulateConfig& c, const simulation::SimulatedR
   if (!r.imu.empty()) {
     text += fmt::format("\n[imu]\nfile = \"imu.csv\"\ngrade = \"{}\"\nmounting_deg = {}\n", c.imu_errors.grade,
                         list(Eigen::Vector3d(mounting.roll, mounting.pitch, mounting.yaw) / units::deg));
+    if (c.imu.instability == simulation::ImuModel::Instability::flicker) text += "instability = \"flicker\"\n";
   }
   if (!r.gnss.empty()) {
     text += fmt::format("\n[gnss]\nfile = \"gnss.csv\"\nlever_arm_m = {}\n", list(C_bv * c.gnss.antenna));

@@ -78,7 +78,15 @@ Expected<SurveyResult> compute_survey(const SurveyConfig& config, const std::fil
                                         [](const auto& a, const auto& b) { return a.seconds() < b.seconds(); });
   if (longest != solved->standstills.end()) {
     const auto rate = inertial::measured_earth_rate(estimator.imu, *longest, config.estimator.imu_errors);
-    if (rate && rate->sigma < 3.0 * units::deg_per_hour) result.earth_rate = rate;
+    if (rate && rate->sigma < 3.0 * units::deg_per_hour) {
+      const auto& place = solved->solution.smoothed.empty() ? solved->solution.forward : solved->solution.smoothed;
+      if (!place.empty()) {
+        const std::string positions = config.gnss.given() ? config.gnss.file.path.string() : job.string();
+        const auto fine = inertial::check_latitude(*rate, place.front().position, positions);
+        if (!fine) return tl::unexpected(fine.error());
+      }
+      result.earth_rate = rate;
+    }
   }
   watch.stage("align, filter and smooth");
   if (config.total_station.check_control && input->total_station) {

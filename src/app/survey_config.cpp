@@ -52,6 +52,11 @@ void describe_imu(ConfigVisitor& v, SurveyConfig& c) {
   describe(v, c.imu);
   describe(v, c.imu_errors);
   auto& e = c.estimator;
+  static constexpr Words<fusion::BiasInstability, 2> instabilities{
+      {{"gauss-markov", fusion::BiasInstability::gauss_markov}, {"flicker", fusion::BiasInstability::flicker}}};
+  v.choice<fusion::BiasInstability>("instability", e.instability, instabilities,
+                                    {.doc = "How the biases vary: with their correlation time, or as 1/f noise (an "
+                                            "Allan deviation with a flat floor)."});
   Eigen::Vector3d mounting(e.mounting.roll, e.mounting.pitch, e.mounting.yaw);
   v.value("mounting_deg", mounting,
           {.doc = "Attitude of the IMU in the vehicle: roll, pitch, yaw that turn the vehicle's axes into the IMU's.",
@@ -132,22 +137,29 @@ void describe_wheels(ConfigVisitor& v, SurveyConfig& c) {
   });
   v.table("standstill", "Zero velocity and zero turn rate while the vehicle stands.", [&](ConfigVisitor& t) {
     t.value("on", e.zero_velocity, {.doc = "Detect standstill and use it."});
+    t.value("after_alignment", e.zero_velocity_after_alignment,
+            {.doc = "Use it after the initial alignment, too; false: a standing vehicle shows how its IMU drifts."});
     t.value("minimum_s", e.standstill.minimum, seconds("Shorter ones are not used."));
     t.value("margin_s", e.standstill.margin, seconds("Taken off both ends, where the vehicle still rocks."));
-    t.value("acceleration_spread_mps2", e.standstill.acceleration_spread,
-            {.doc = "Standard deviation of the specific force in one second that still counts as standing.",
-             .unit = "m/s^2",
-             .positive = true});
+    t.value(
+        "acceleration_spread_mps2", e.standstill.acceleration_spread,
+        {.doc =
+             "Standard deviation of the specific force in one second that still counts as standing, and change of its "
+             "mean since the standstill began.",
+         .unit = "m/s^2",
+         .positive = true});
     t.value("rate_spread_radps", e.standstill.rate_spread,
             {.doc = "The same of the angular rate.", .unit = "rad/s", .positive = true});
     t.value("rate_mean_radps", e.standstill.rate_mean,
             {.doc = "Mean angular rate beyond the gyros' bias.", .unit = "rad/s", .positive = true});
     t.value("zero_rate_sigma_radps", e.zero_rate_sigma,
             {.doc = "Of the zero angular rate, beyond the gyros' noise.", .unit = "rad/s", .positive = true});
-    t.value("sigma_mps", e.zero_velocity_sigma, speed("Of the zero velocity."));
+    t.value("sigma_mps", e.zero_velocity_sigma, speed("Of the zero velocity, mean over an interval."));
     t.value("interval_s", e.zero_interval, seconds("Between two updates while standing."));
-    t.value("position_sigma_m", e.zero_position_sigma,
-            metres("How far rocking moves the vehicle about its mean place; while it stands its position is that."));
+    t.value(
+        "position_sigma_m", e.zero_position_sigma,
+        metres("How far rocking moves the vehicle about its mean place; while it stands its position is that. Over an "
+               "interval it makes a mean velocity, which adds to sigma_mps."));
   });
 }
 

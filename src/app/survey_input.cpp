@@ -55,7 +55,7 @@ Expected<void> load_imu(const SurveyConfig& config, SurveyInput& input) {
   if (!checked) return tl::unexpected(checked.error());
   input.imu = std::move(*checked);
   input.imu.series.samples.shrink_to_fit();  // what reading left over would stay through the whole run
-  sensors::ImuPlausibilityOptions plausible{.file = name};
+  sensors::ImuPlausibilityOptions plausible{.file = name, .gyro_bias = config.estimator.imu_errors.gyro.bias};
   // A mounting that is declared leans the IMU on purpose.
   plausible.max_tilt = config.max_tilt.value_or(
       plausible.max_tilt + std::hypot(config.estimator.mounting.roll, config.estimator.mounting.pitch));
@@ -192,6 +192,10 @@ Expected<SurveyInput> read_survey_input(const SurveyConfig& config, const std::f
     if (auto done = stages[i](); !done) return tl::unexpected(done.error());
   }
   if (auto done = check_extents(config, input); !done) return tl::unexpected(done.error());
+  if (!input.odometers.empty() && !input.odometers.front().empty() && !input.gnss.empty()) {
+    auto fine = sensors::check_gnss_way(input.gnss, input.odometers.front(), config.gnss.file.path.string());
+    if (!fine) return tl::unexpected(fine.error());
+  }
   progress.report("reading", 1.0);
   return input;
 }

@@ -54,7 +54,8 @@ class Forward {
   using Vector = filter::StateVector<N>;
 
   void begin(const Segment&, const Start& start, Steps& out) {
-    judge_.begin_segment(start.estimate.nav.time);
+    started_ = start.estimate.nav.time;
+    judge_.begin_segment(started_);
     // The segment before hands over what its last landmark shares.
     for (std::size_t i = in_.landmarks.lower_bound({start.estimate.nav.time.ns + 1}); i-- > 0 && !shared_place_;) {
       if (in_.landmarks[i].shared) shared_place_ = in_.landmarks[i].shared->place;
@@ -78,7 +79,9 @@ class Forward {
     InsEstimate& e = moment_.estimate;
     const Time begin = e.nav.time;
     const bool held = stands_between(begin, end), changed = std::exchange(held_, held) != held;
-    if (changed) odometer_in_hold_ = false;
+    if (changed) odometer_in_hold_ = false, last_zero_ = begin;
+    const bool resting = held && (begin - last_zero_).seconds() > o_.zero_interval - rest_window() - 0.5 * dt_;
+    if (!resting) rest_way_.setZero(), rest_seconds_ = 0.0;
     const DistanceRate rate_before = distance_rate(on_wheels(moment_), l_);
     accumulator_.reset();
     Eigen::Vector3d turned = Eigen::Vector3d::Zero();
@@ -92,6 +95,7 @@ class Forward {
                    const Eigen::Vector3d wheel_b =
                        g.C_nb_middle.transpose() * g.v_middle + moment_.omega_nb_b.cross(e.wheel_lever);
                    way += e.C_vb.row(0).dot(wheel_b) * piece.dt;
+                   if (resting) rest_way_ += g.v_middle * piece.dt, rest_seconds_ += piece.dt;
                  });
     if (held) way = 0.0;
     e.distance += (1.0 + e.odometer_scale) * way;
@@ -217,6 +221,7 @@ class Forward {
   /// Times never go back from one call to the next.
   [[nodiscard]] bool stands_between(Time from, Time to) {
     while (standstill_ < standstills_.size() && standstills_[standstill_].to < from) ++standstill_;
+    if (!o_.zero_velocity_after_alignment && (to - started_).seconds() > o_.alignment_duration) return false;
     return o_.zero_velocity && standstill_ < standstills_.size() && standstills_[standstill_].contains(from) &&
            standstills_[standstill_].contains(to);
   }
@@ -224,17 +229,7 @@ class Forward {
   void apply_constraints(Steps& out) {
     const Time t = moment_.estimate.nav.time;
     standing_ = stands_between(t, t);
-    if (standing_) {
-      if ((t - last_zero_).seconds() < o_.zero_interval - 0.5 * dt_) return;
-      last_zero_ = t;
-      update("zero velocity", t, zero_velocity(moment_, l_, o_.zero_velocity_sigma), true, out);
-      InsMoment mean = moment_;
-      mean.omega_nb_b += mean_rate_ib_ - mean.omega_ib_b;
-      mean.omega_ib_b = mean_rate_ib_;
-      const double sigma = std::hypot(o_.zero_rate_sigma, o_.imu_errors.gyro.random_walk / std::sqrt(dt_));
-      update("zero rate", t, zero_rate(mean, l_, sigma), true, out);
-      return;
-    }
+    if (standing_) return apply_standstill(t, out);
     if (!o_.constraint) return;
     const double since = std::min(1.0, (t - last_constraint_).seconds());
     if (since < std::max(o_.constraint_interval, 0.75 / o_.covariance_rate)) return;
@@ -246,6 +241,33 @@ class Forward {
     filter::Linearized l = constraint(moment_, l_, std::sqrt(std::pow(o_.constraint_sigma, 2) + angle * angle * alike));
     l.H = wheel_velocity(on_wheels(moment_), l_).H.bottomRows<2>();
     update("constraint", t, l, true, out, o_.constraint_peak * speed);
+  }
+
+  /// Length of the mean that a zero velocity is taken of, s: averaging takes vibration and coarse counts off, and lets
+  /// the accelerometers' own noise in; it may add a quarter to the variance.
+  [[nodiscard]] double rest_window() const {
+    const double noise = o_.imu_errors.accelerometer.random_walk, sigma = o_.zero_velocity_sigma;
+    return std::min(o_.zero_interval, 0.75 * sigma * sigma / std::max(1e-30, noise * noise));
+  }
+
+  void apply_standstill(Time t, Steps& out) {
+    if ((t - last_zero_).seconds() < o_.zero_interval - 0.5 * dt_) return;
+    last_zero_ = t;
+    const bool mean_known = rest_seconds_ > 1.5 * dt_;
+    const double seconds = mean_known ? rest_seconds_ : 0.0, walk = o_.imu_errors.accelerometer.random_walk;
+    // What stays within a distance of its place has a mean velocity of twice that, at most, over the time.
+    const double rocking = mean_known ? std::sqrt(2.0) * o_.zero_position_sigma / seconds : 0.0;
+    const double sigma =
+        std::sqrt(std::pow(o_.zero_velocity_sigma, 2) + rocking * rocking + walk * walk * seconds / 3.0);
+    const Eigen::Vector3d mean =
+        mean_known ? Eigen::Vector3d(rest_way_ / seconds) : Eigen::Vector3d(moment_.estimate.nav.v_eb_n);
+    rest_way_.setZero(), rest_seconds_ = 0.0;
+    update("zero velocity", t, zero_velocity(moment_, l_, mean, seconds, sigma), true, out);
+    InsMoment turning = moment_;
+    turning.omega_nb_b += mean_rate_ib_ - turning.omega_ib_b;
+    turning.omega_ib_b = mean_rate_ib_;
+    const double rate_sigma = std::hypot(o_.zero_rate_sigma, o_.imu_errors.gyro.random_walk / std::sqrt(dt_));
+    update("zero rate", t, zero_rate(turning, l_, rate_sigma), true, out);
   }
 
   /// `peak`: single errors may be so much larger than R tells before they count as faults. Returns whether the
@@ -284,6 +306,10 @@ class Forward {
       ++step_.rows;
     }
     filter::symmetrize<N>(P_);
+    if (rest_seconds_ > 0.0) {  // the way of this window, as the better estimate would have had it
+      const Eigen::Vector3d mean = rest_way_ / rest_seconds_;
+      rest_way_ -= rest_seconds_ * (zero_velocity(moment_, l_, mean, rest_seconds_, 1.0).H * x);
+    }
     moment_.estimate = without_error(moment_.estimate, l_, x);
     refresh();
     return true;
@@ -329,13 +355,14 @@ class Forward {
   filter::Transition<N> transition_;
   inertial::TransitionAccumulator accumulator_;
   Step step_;
-  Eigen::Vector3d mean_rate_ib_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d mean_rate_ib_ = Eigen::Vector3d::Zero(), rest_way_ = Eigen::Vector3d::Zero();
+  double rest_seconds_ = 0.0;
   double dt_ = 0.0, way_ = 0.0, lost_position_ = 0.0, lost_velocity_ = 0.0;
   bool distance_known_ = false, anchored_ = false, restart_distance_ = false, standing_ = false, report_done_ = false,
        held_ = false, odometer_in_hold_ = false;
   std::size_t standstill_ = 0;
   std::optional<Eigen::Matrix<double, 6, 1>> shared_place_;  ///< of the landmark before
-  Time last_speed_{INT64_MIN / 2}, last_zero_{INT64_MIN / 2}, last_constraint_{INT64_MIN / 2};
+  Time started_, last_speed_{INT64_MIN / 2}, last_zero_{INT64_MIN / 2}, last_constraint_{INT64_MIN / 2};
 };
 
 }  // namespace versine::fusion::detail

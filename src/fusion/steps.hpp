@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <memory>
@@ -25,12 +26,14 @@ struct StepNoise {
 /// so that it needs no attitude).
 class NoiseModel {
  public:
-  NoiseModel(const AidedInsOptions& o, const InsLayout& layout) : o_(o), l_(layout) {}
+  NoiseModel(const AidedInsOptions& o, const InsLayout& layout)
+      : o_(o),
+        l_(layout),
+        gyro_(densities(o.imu_errors.gyro, o.instability)),
+        accelerometer_(densities(o.imu_errors.accelerometer, o.instability)) {}
 
   template <int N>
   void fill(const StepNoise& s, filter::Transition<N>& t) const {
-    const auto& g = o_.imu_errors.gyro;
-    const auto& a = o_.imu_errors.accelerometer;
     const int n = l_.size();
     t.decay.setOnes(n);
     t.noise.setZero(n);
@@ -38,12 +41,12 @@ class NoiseModel {
       t.noise.template segment<decltype(block)::size>(block.offset).setConstant(variance);
     };
     set(l_.position, double{s.position});
-    set(l_.velocity, a.random_walk * a.random_walk * s.dt + double{s.velocity});
-    set(l_.attitude, g.random_walk * g.random_walk * s.dt);
+    set(l_.velocity, accelerometer_.white * s.dt + double{s.velocity});
+    set(l_.attitude, gyro_.white * s.dt);
     set(l_.distance, s.new_distance ? 2.0 * o_.odometer_sigma * o_.odometer_sigma
                                     : o_.odometer_random_walk * o_.odometer_random_walk * s.way + 1e-14);
-    set(l_.gyro_bias, walk(g) * s.dt);
-    set(l_.accelerometer_bias, walk(a) * s.dt + o_.gravity_walk * o_.gravity_walk * s.way);
+    set(l_.gyro_bias, gyro_.walk * s.dt);
+    set(l_.accelerometer_bias, accelerometer_.walk * s.dt + o_.gravity_walk * o_.gravity_walk * s.way);
     set(l_.odometer_scale, o_.odometer_scale_walk * o_.odometer_scale_walk * s.dt);
     if (l_.gnss_bias.enabled()) {
       const double decay = std::exp(-s.dt / o_.gnss_bias_time);
@@ -64,13 +67,27 @@ class NoiseModel {
   }
 
  private:
-  /// A slowly varying bias on top of a constant one: a random walk that grows as the Gauss-Markov process does at
-  /// first.
-  [[nodiscard]] static double walk(const sensors::TriadErrors& e) {
-    return 2.0 * e.bias_instability * e.bias_instability / e.correlation_time + e.rate_random_walk * e.rate_random_walk;
+  /// Of a triad: of its white noise, and of the walk of its bias.
+  struct Densities {
+    double white = 0.0, walk = 0.0;
+  };
+  /// A slowly varying bias on top of a constant one. Gauss-Markov: a random walk that grows as the process does at
+  /// first. Flicker of density B^2 / (pi f) is a sum of such processes of equal variance 0.366 B^2, two in each decade
+  /// of correlation times; a bias state follows those longer than `corner`, whose walks sum to 1.07 B^2 / corner, and
+  /// the shorter ones are white noise of 0.34 B^2 corner to it. The corner is 30 s, about what the aids take to tell a
+  /// bias anew, or longer where that adds less than a quarter to the white noise.
+  static Densities densities(const sensors::TriadErrors& e, BiasInstability kind) {
+    const double white = e.random_walk * e.random_walk, square = e.bias_instability * e.bias_instability;
+    const double rate = e.rate_random_walk * e.rate_random_walk;
+    if (kind == BiasInstability::gauss_markov || !(square > 0.0)) {
+      return {white, 2.0 * square / e.correlation_time + rate};
+    }
+    const double corner = std::clamp(0.25 * white / (0.34 * square), 30.0, 3600.0);
+    return {white + 0.34 * square * corner, 1.07 * square / corner + rate};
   }
   const AidedInsOptions& o_;
   const InsLayout& l_;
+  Densities gyro_, accelerometer_;
 };
 
 /// Room for numbers in large pieces: what a run of hours keeps is exactly as long as its states are many.

@@ -12,7 +12,7 @@ namespace {
 /// Mean and spread of rate and specific force in one window.
 struct Window {
   Time from, to;
-  Vector3d rate_mean, rate_spread, force_spread;
+  Vector3d rate_mean, rate_spread, force_mean, force_spread;
 };
 
 std::vector<Window> windows(const sensors::ImuSeries& imu, double length) {
@@ -34,8 +34,8 @@ std::vector<Window> windows(const sensors::ImuSeries& imu, double length) {
     const auto spread = [k](const Vector3d& sum, const Vector3d& squares) -> Vector3d {
       return (k * squares - (k * sum).cwiseAbs2()).cwiseMax(0.0).cwiseSqrt();
     };
-    result.push_back(
-        {imu[a].time - imu.interval, imu[a + n - 1].time, k * rate, spread(rate, rate2), spread(force, force2)});
+    result.push_back({imu[a].time - imu.interval, imu[a + n - 1].time, k * rate, spread(rate, rate2),
+                      imu[a].dvel / dt + k * force, spread(force, force2)});
   }
   return result;
 }
@@ -129,6 +129,7 @@ std::vector<Interval> find_standstills(const StandstillInput& input, const Stand
   }
   const Duration margin = Duration::from_seconds(o.margin);
   std::optional<Interval> open;
+  Vector3d force_open = Vector3d::Zero();
   const auto close = [&] {
     if (open && open->seconds() >= o.minimum) result.push_back({open->from + margin, open->to - margin});
     open.reset();
@@ -137,12 +138,15 @@ std::vector<Interval> find_standstills(const StandstillInput& input, const Stand
     if (!quiet(w) || !((w.rate_mean - bias).cwiseAbs().maxCoeff() <= o.rate_mean) || !aids_agree(input, o, w)) {
       close();
     } else if (open && (w.from - open->to).seconds() < 0.5 * o.window &&
+               // A steady acceleration has no spread, but it is another force than that of rest.
+               (w.force_mean - force_open).cwiseAbs().maxCoeff() <= force_limit &&
                odometer_agrees(input, open->from, w.to, 2.0 * o.odometer_step) &&
                positions_agree(input, o, open->from, w.to)) {
       open->to = w.to;
     } else {
       close();
       open = Interval{w.from, w.to};
+      force_open = w.force_mean;
     }
   }
   close();

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "order.hpp"
 
@@ -15,14 +17,43 @@ bool same_values(const ImuSample& a, const ImuSample& b) {
   return a.dtheta == b.dtheta && a.dvel == b.dvel;
 }
 
-// Marks every sample of a run of unchanged values that lasts longer than `longest`, but its first.
+using Channels = Eigen::Matrix<double, 6, 1>;
+
+Channels channels(const ImuSample& s) {
+  return (Channels() << s.dtheta, s.dvel).finished();
+}
+
+// Of each channel the smallest change from one sample to the next: one count of a coarse sensor, next to nothing of a
+// fine one.
+Channels counts(const std::vector<ImuSample>& samples) {
+  Channels count = Channels::Constant(std::numeric_limits<double>::infinity());
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const Channels a = channels(samples[i - 1]), b = channels(samples[i]);
+    for (Eigen::Index k = 0; k < 6; ++k) {
+      const double change = std::abs(b[k] - a[k]);
+      // Numbers that were meant to be equal differ by the rounding of their scale.
+      if (change > 1e-12 * std::abs(a[k]) && change < count[k]) count[k] = change;
+    }
+  }
+  return count;
+}
+
+// Marks every sample of a run of unchanged values that lasts longer than `longest`, but its first. Counts of a quiet
+// sensor that stands stay for seconds: a run that the values enter or leave by a count or two is no fault.
 std::vector<char> hanging(const std::vector<ImuSample>& samples, double longest) {
   std::vector<char> marks(samples.size(), 0);
   if (!(longest > 0.0)) return marks;
+  std::optional<Channels> count;
+  const auto step = [&](std::size_t a, std::size_t b) {
+    if (!count) count = counts(samples);
+    const Channels change = (channels(samples[b]) - channels(samples[a])).cwiseAbs();
+    return (change.array() <= 2.5 * count->array()).all();
+  };
   for (std::size_t i = 0; i < samples.size();) {
     std::size_t j = i + 1;
     while (j < samples.size() && same_values(samples[i], samples[j])) ++j;
-    if ((samples[j - 1].time - samples[i].time).seconds() > longest) {
+    const bool long_run = (samples[j - 1].time - samples[i].time).seconds() > longest;
+    if (long_run && !(i > 0 && step(i - 1, i)) && !(j < samples.size() && step(j - 1, j))) {
       for (std::size_t k = i + 1; k < j; ++k) marks[k] = 1;
     }
     i = j;

@@ -2,10 +2,12 @@
 import csv
 import gzip
 import json
+import math
 import os
+import random
 import unittest
 
-from support import GNSS_HEAD, IMU_HEAD, JOB, SOURCE, Case, gnss_rows, imu_rows
+from support import (GNSS_HEAD, GRAVITY, IMU_HEAD, JOB, OMEGA, SOURCE, Case, distance_at, gnss_rows, imu_rows)
 
 
 class Survey(Case):
@@ -55,6 +57,30 @@ class Faults(Case):
         self.assertNotIn("inf", text)
         return summary, json.loads((self.folder / "job.result/run.json").read_text())
 
+    def within_three_sigma(self, after):
+        """Position from the fault on against the truth: the vehicle drives due north."""
+        with open(self.folder / "job.result/trajectory.csv", newline="") as file:
+            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+        looked, beyond = 0, 0
+        for row in rows:
+            t = float(row["time_s"])
+            if t < after or t > 88.0:
+                continue
+            north = math.radians(float(row["latitude_deg"]) - 48.0) * 6367000.0 - distance_at(t)[0]
+            east = math.radians(float(row["longitude_deg"]) - 11.0) * 6388000.0 * math.cos(math.radians(48.0))
+            up = float(row["height_m"]) - 500.0
+            for error, sigma in ((north, "north"), (east, "east"), (up, "down")):
+                looked += 1
+                beyond += not abs(error) <= 3.0 * float(row[f"sigma_{sigma}_m"])
+        self.assertGreater(looked, 800)
+        self.assertLessEqual(beyond, 0.01 * looked)
+
+    def test_gnss_stamps_half_a_sample_off(self):
+        rows = [[r[0] + 0.01, r[1] + math.degrees(0.01 * distance_at(r[0])[1] / 6367000.0), *r[2:]] for r in gnss_rows()]
+        self.write_table("gnss.csv", GNSS_HEAD, rows)
+        self.survey()
+        self.within_three_sigma(after=20.0)
+
     def test_nan_field_and_duplicated_line(self):
         def spoil(text):
             lines = text.split("\n")
@@ -65,6 +91,7 @@ class Faults(Case):
         self.edit("imu.csv", spoil)
         _, run = self.survey()
         self.assertGreaterEqual(len(run["findings"]), 2)
+        self.within_three_sigma(after=20.0)
 
     def test_gap_of_two_seconds(self):
         rows = [r for r in imu_rows() if not 50.0 < r[0] <= 52.0]
@@ -72,6 +99,7 @@ class Faults(Case):
         summary, run = self.survey()
         self.assertEqual(len(summary["segments"]), 2)
         self.assertTrue(any("gap" in f["kind"] for f in run["findings"]))
+        self.within_three_sigma(after=52.0)
 
     def test_outlying_fixes_are_rejected(self):
         rows = [[r[0], r[1] + (2e-5 if 60 <= r[0] < 65 else 0.0), r[2], r[3]] for r in gnss_rows()]
@@ -79,6 +107,7 @@ class Faults(Case):
         summary, _ = self.survey()
         gnss = [s for s in summary["innovations"] if "gnss" in s["sensor"]][0]
         self.assertGreaterEqual(gnss["rejected"], 5)
+        self.within_three_sigma(after=60.0)
 
 
 class BadInput(Case):
@@ -105,6 +134,42 @@ class BadInput(Case):
         rows = [[r[0], 11.0 + r[1] - 48.0, 122.0 + 5e-5 * r[0], r[3]] for r in gnss_rows()]
         self.write_table("gnss.csv", ["time_s", "longitude_deg", "latitude_deg", "height_m"], rows)
         self.refused("survey", "job.toml", says=["gnss.csv", "latitude"])
+
+    def trolley(self, degrees=False, swapped=False):
+        """A trolley with navigation-grade gyros: stands for 130 s, then creeps 4 m straight on."""
+        noise = random.Random(3)
+        lat, unit = math.radians(48.0), 57.29578 if degrees else 1.0
+        omega = (OMEGA * math.cos(lat), 0.0, -OMEGA * math.sin(lat))
+        self.write_table("imu.csv", IMU_HEAD, ([k / 50] + [unit * (w + noise.gauss(0, 1e-6)) for w in omega] +
+                                               [noise.gauss(0, 2e-3), noise.gauss(0, 2e-3), -GRAVITY]
+                                               for k in range(1, 150 * 50)))
+        head = ["time_s", "longitude_deg", "latitude_deg", "height_m"] if swapped else GNSS_HEAD
+        self.write_table("gnss.csv", head, ([float(k), 48.0 + math.degrees(max(0, k - 130) * 0.2 / 6367000), 11.0, 500.0]
+                                            for k in range(1, 150)))
+        self.edit("job.toml", lambda text: text.replace("mems", "navigation-rlg"))
+
+    def test_slow_trolley_passes(self):
+        self.trolley()
+        self.good("survey", "job.toml")
+
+    def test_degrees_declared_as_radians_on_a_slow_trolley(self):
+        self.trolley(degrees=True)
+        self.refused("survey", "job.toml", says=["imu.csv", "degrees declared as radians"])
+
+    def test_latitude_and_longitude_swapped_on_a_short_straight_run(self):
+        self.trolley(swapped=True)
+        self.refused("survey", "job.toml", says=["gnss.csv", "swapped"])
+
+    def test_latitude_and_longitude_swapped_told_by_the_odometer(self):
+        # A consumer IMU sees no Earth rate, and a straight way no turn. Eastwards the way is longer when swapped.
+        self.write_table("odometer.csv", ["time_s", "distance_m"], ([0.5 * k, distance_at(0.5 * k)[0]] for k in range(180)))
+        rows = [[r[0], 48.0, 11.0 + (r[1] - 48.0) / math.cos(math.radians(48.0)), r[3]] for r in gnss_rows()]
+        self.edit("job.toml", lambda text: text.replace("heading_deg = 0.0", "heading_deg = 90.0") +
+                  '[[odometer]]\nfile = "odometer.csv"\ntime_scale = "recorder"\n')
+        self.write_table("gnss.csv", GNSS_HEAD, rows)
+        self.good("check", "job.toml")
+        self.write_table("gnss.csv", ["time_s", "longitude_deg", "latitude_deg", "height_m"], rows)
+        self.refused("survey", "job.toml", says=["gnss.csv", "swapped"])
 
     def test_no_overlap_in_time(self):
         self.write_table("gnss.csv", GNSS_HEAD, ([r[0] + 5000.0] + r[1:] for r in gnss_rows()))

@@ -95,7 +95,7 @@ TEST(MeasurementModels, JacobiansMatchPerturbation) {
   expect_jacobian(
       s, [&](const InsMoment& m) { return constraint(m, l, 0.1); }, 2e-4);
   expect_jacobian(
-      s, [&](const InsMoment& m) { return zero_velocity(m, l, 0.1); }, 1e-6);
+      s, [&](const InsMoment& m) { return zero_velocity(m, l, m.estimate.nav.v_eb_n, 0.0, 0.1); }, 1e-6);
   expect_jacobian(
       s, [&](const InsMoment& m) { return zero_rate(m, l, 0.1); }, 1e-6);
   expect_jacobian(
@@ -108,6 +108,27 @@ TEST(MeasurementModels, JacobiansMatchPerturbation) {
       5e-5);
   expect_jacobian(
       s, [&](const InsMoment& m) { return landmark_attitude(m, l, landmark, q_bs); }, 1e-4);
+}
+
+TEST(MeasurementModels, MeanVelocityOfAStandingVehicleSeesHowTiltAndBiasBuildUp) {
+  Scene s;
+  s.options.mounting_sigma = s.options.gnss_lever.sigma = s.options.wheel_lever.sigma = s.options.gnss_bias = 0.0;
+  s.layout = InsLayout::from(s.options);
+  const InsLayout& l = s.layout;
+  constexpr double window = 2.0;
+  // Of an estimate whose force is off, the velocity half a window ago is that of the end less the force's error since.
+  const geodesy::Geodetic& at = s.moment.estimate.nav.position;
+  const Vector3d gravity = geodesy::wgs84.gravity_ned(at.latitude, at.height);
+  const Vector3d force_b = -(s.moment.C_nb.transpose() * gravity);
+  const inertial::ImuCorrection known = s.moment.estimate.imu;
+  const auto mean = [&](const InsMoment& m) -> Vector3d {
+    const Vector3d scale = m.estimate.imu.accelerometer_scale - known.accelerometer_scale;
+    const Vector3d force =
+        force_b - (m.estimate.imu.accelerometer_bias - known.accelerometer_bias) - scale.cwiseProduct(force_b);
+    return m.estimate.nav.v_eb_n - 0.5 * window * (m.C_nb * force + gravity);
+  };
+  expect_jacobian(
+      s, [&](const InsMoment& m) { return zero_velocity(m, l, mean(m), window, 0.1); }, 1e-4);
 }
 
 TEST(MeasurementModels, TheLayoutNamesEveryStateOnce) {

@@ -59,6 +59,17 @@ TEST(Standstill, IsFoundWithAnyAid) {
   }
 }
 
+TEST(Standstill, EndsWhereTheVehicleSetsOffSmoothly) {
+  // 0.5 m/s^2 without any unrest: 0.25 m in the first second, which fixes of 2 cm and a limit of 0.3 m/s let pass.
+  Ride ride(30.0, 60.0);
+  for (auto& s : ride.imu.samples) {
+    if (s.time.seconds() > 30.005 && s.time.seconds() < 40.0) s.dvel.x() = 0.01 * 0.5;
+  }
+  const auto found = find_standstills({.imu = &ride.imu, .gnss = &ride.gnss});
+  EXPECT_GT(seconds_between(found, 0.0, 30.0), 25.0);
+  EXPECT_EQ(seconds_between(found, 30.0, 60.0), 0.0);
+}
+
 TEST(Standstill, SteadyRideIsNoneWhereAnAidTellsOfIt) {
   const Ride ride(30.0, 90.0);
   // With nothing but the IMU a steady ride looks like standing: documented, and the reason for the aids.

@@ -153,6 +153,34 @@ TEST(ImuCheck, ImpossibleSamplesAreLeftOut) {
   for (const ImuSample& s : checked->series) EXPECT_TRUE(s.dtheta.allFinite() && s.dvel.allFinite());
 }
 
+// A standing trolley with 16 bits for 250 deg/s and 2 g and less noise than a count.
+TEST(ImuCheck, QuietSensorOfCoarseCountsIsNotStuck) {
+  const double angle = 250.0 * units::deg / 32768.0 * 0.01, velocity = 2.0 * 9.81 / 32768.0 * 0.01;
+  ImuSeries imu = drive();
+  const auto counted = [](const Eigen::Vector3d& x, double count) -> Eigen::Vector3d {
+    return count * (x / count).array().round().matrix();
+  };
+  std::mt19937 random(2);
+  std::normal_distribution<double> noise;
+  for (std::size_t i = 0; i < imu.size(); ++i) {
+    if (i < 3000) {  // now and then a count more or less
+      imu[i].dtheta = angle * Eigen::Vector3d(noise(random) > 3.2 ? 1 : 0, 0, noise(random) > 3.2 ? -1 : 0);
+      imu[i].dvel = 0.01 * Eigen::Vector3d(0.05, -0.02, -9.81);
+    }
+    imu[i].dtheta = counted(imu[i].dtheta, angle), imu[i].dvel = counted(imu[i].dvel, velocity);
+  }
+  const auto quiet = check_imu(imu);
+  ASSERT_TRUE(quiet);
+  EXPECT_EQ(find(quiet->record, "stuck"), nullptr);
+  EXPECT_EQ(quiet->segments.size(), 1u);
+  // The same sensor that hangs while it moves is found.
+  for (std::size_t i = 4500; i < 4600; ++i) imu[i].dtheta = imu[4499].dtheta, imu[i].dvel = imu[4499].dvel;
+  const auto hung = check_imu(imu);
+  ASSERT_TRUE(hung);
+  ASSERT_NE(find(hung->record, "stuck"), nullptr);
+  EXPECT_EQ(find(hung->record, "stuck")->count, 100u);
+}
+
 TEST(ImuCheck, RefusesWhatItCannotRepair) {
   EXPECT_FALSE(check_imu({}));
   ImuSeries imu = drive();
@@ -281,6 +309,54 @@ TEST(Plausibility, CourseTellsUnitsAndSwappedCoordinates) {
   for (auto& s : swapped.samples) std::swap(s.position.latitude, s.position.longitude);
   EXPECT_FALSE(check_gnss_plausibility(nullptr, swapped, "gnss.csv"));
   EXPECT_TRUE(check_gnss_plausibility(nullptr, gnss, "gnss.csv"));
+}
+
+TEST(Plausibility, StandingNavigationGyrosShowTheEarthsRate) {
+  const double bias = 0.01 * units::deg_per_hour;
+  ImuSeries trolley = drive();
+  std::mt19937 random(2);
+  std::normal_distribution<double> noise;
+  const Eigen::Vector3d earth = 7.292e-5 * Eigen::Vector3d(0.5, 0.3, -0.81).normalized();
+  for (std::size_t i = 0; i < trolley.size(); ++i) {  // creeps through a curve once it moves
+    const Eigen::Vector3d curve(0.0, 0.0, i > 2000 ? 0.003 : 0.0);
+    trolley[i].dtheta = 0.01 * (earth + curve) + 1e-8 * Eigen::Vector3d(noise(random), noise(random), noise(random));
+  }
+  for (std::size_t i = 0; i < 2000; ++i) trolley[i].dvel = 0.01 * Eigen::Vector3d(0.0, 0.0, -9.81);
+  auto imu = check_imu(trolley);
+  ASSERT_TRUE(check_imu_plausibility(*imu, {.gyro_bias = bias}));
+  for (auto& s : imu->series.samples) s.dtheta /= units::deg;
+  EXPECT_TRUE(check_imu_plausibility(*imu));  // slow: nothing but the Earth tells
+  const auto found = check_imu_plausibility(*imu, {.gyro_bias = bias});
+  ASSERT_FALSE(found);
+  EXPECT_NE(found.error().advice.find("degps"), std::string::npos);
+}
+
+TEST(Plausibility, ShortStraightWayTellsSwappedCoordinates) {
+  for (const double course : {0.1, 1.2, 2.0, -3.0}) {
+    Series<GnssSample> gnss, swapped;
+    Series<OdometerSample> odometer;
+    geodesy::Geodetic g{0.9, 0.23, 100.0};
+    const Eigen::Vector3d v(0.8 * std::cos(course), 0.8 * std::sin(course), 0.0);
+    for (int i = 0; i < 60; ++i) {
+      const Time t{1000 * i * ms};
+      gnss.samples.push_back({.time = t, .position = g, .sigma_ned = {0.02, 0.02, 0.05}, .v_ned = v});
+      swapped.samples.push_back(gnss.samples.back());
+      swapped.samples.back().position = {g.longitude, g.latitude, g.height};
+      odometer.samples.push_back({t, 0.8 * i});
+      g = geodesy::wgs84.displaced(g, v);
+    }
+    EXPECT_TRUE(check_gnss_plausibility(nullptr, gnss, "gnss.csv")) << course;
+    const auto by_velocity = check_gnss_plausibility(nullptr, swapped, "gnss.csv");
+    ASSERT_FALSE(by_velocity) << course;
+    EXPECT_NE(by_velocity.error().message().find("swapped"), std::string::npos);
+    EXPECT_TRUE(check_gnss_way(gnss, odometer, "gnss.csv")) << course;
+    // Nearly north the way changes by the cosine of a small longitude only.
+    if (std::abs(std::sin(course)) > 0.5) {
+      const auto by_way = check_gnss_way(swapped, odometer, "gnss.csv");
+      ASSERT_FALSE(by_way) << course;
+      EXPECT_NE(by_way.error().advice.find("swapped"), std::string::npos);
+    }
+  }
 }
 
 TEST(Plausibility, RecordingsMustOverlap) {

@@ -37,6 +37,10 @@ enum class HeadingSource {
 };
 enum class SmootherKind { none, bryson_frazier, rauch_tung_striebel };
 enum class OdometerUse { distance, speed };
+enum class BiasInstability {
+  gauss_markov,  ///< with the grade's correlation time
+  flicker,       ///< 1/f noise with a floor of the Allan deviation of 0.664 times the grade's bias instability
+};
 enum class RobustWeight { none, huber };
 
 /// Where things are fixed: lever arms in the b-frame from the IMU's centre, m, and their sigma when they are
@@ -49,7 +53,8 @@ struct LeverArm {
 struct AidedInsOptions {
   // --- the IMU and how it sits
   sensors::ImuErrors imu_errors = sensors::find_imu_grade("navigation-rlg")->errors;
-  geodesy::Euler mounting;      ///< attitude of the IMU (b) in the vehicle (v), rad
+  BiasInstability instability = BiasInstability::gauss_markov;  ///< how the slow part of the biases varies
+  geodesy::Euler mounting;                                      ///< attitude of the IMU (b) in the vehicle (v), rad
   double mounting_sigma = 0.0;  ///< rad; pitch and yaw of the mounting are estimated when positive
   LeverArm gnss_lever;          ///< to the antenna's phase centre
   LeverArm wheel_lever;         ///< to the wheel point of odometer and constraint: the middle of the wheelbase
@@ -99,11 +104,14 @@ struct AidedInsOptions {
 
   // --- standing still
   bool zero_velocity = true;
-  double zero_velocity_sigma = 0.002;  ///< m/s
-  double zero_rate_sigma = 2e-4;       ///< rad/s; noise of the mean rate in one covariance step beyond the gyros' own
-  double zero_interval = 0.5;          ///< s between updates while standing
+  /// After `alignment_duration`, too. false: a vehicle that stands shows the drift of its unaided IMU.
+  bool zero_velocity_after_alignment = true;
+  /// m/s; of the mean velocity over an interval (or over as much of it as the accelerometers' noise lets be averaged)
+  double zero_velocity_sigma = 0.002;
+  double zero_rate_sigma = 2e-4;  ///< rad/s; noise of the mean rate in one covariance step beyond the gyros' own
+  double zero_interval = 0.5;     ///< s between updates while standing
   /// m; how far the vehicle's place may be from its mean place of a standstill (rocking). While it stands its position
-  /// is that constant, not the integral of a velocity.
+  /// is that constant, not the integral of a velocity. It adds to the sigma of the mean velocity.
   double zero_position_sigma = 1e-4;
   inertial::StandstillOptions standstill;
 

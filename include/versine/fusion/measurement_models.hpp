@@ -21,8 +21,11 @@ namespace versine::fusion {
                                                const sensors::SpeedSample& sample, double sigma);
 /// Non-holonomic constraint: no velocity to the right and down at the wheel (Chen 2018 eq. 10 to 12).
 [[nodiscard]] filter::Linearized constraint(const InsMoment& m, const InsLayout& layout, double sigma);
-/// The vehicle stands: no velocity of the IMU in n.
-[[nodiscard]] filter::Linearized zero_velocity(const InsMoment& m, const InsLayout& layout, double sigma);
+/// The vehicle stands: no velocity of the IMU in n on the mean of the last `seconds`, though vibration and rocking give
+/// it one at each moment. `mean`: what the estimate had. 0 s: at the moment itself. REQUIRES seconds short against the
+/// change of the attitude's error (tens of seconds).
+[[nodiscard]] filter::Linearized zero_velocity(const InsMoment& m, const InsLayout& layout, const Eigen::Vector3d& mean,
+                                               double seconds, double sigma);
 /// The vehicle stands: the mean rate of b against n is zero.
 [[nodiscard]] filter::Linearized zero_rate(const InsMoment& m, const InsLayout& layout, double sigma);
 /// Heading of the vehicle's forward axis.

@@ -16,13 +16,15 @@ struct Interval {
 /// When a vehicle counts as standing. The limits are those of a trolley with its brake on or a car with its engine
 /// running; an IMU noisier than they allow widens them by itself (see find_standstills).
 struct StandstillOptions {
-  double window = 1.0;                ///< s; each window is judged as a whole
-  double minimum = 2.0;               ///< s; shorter standstills are not reported
-  double margin = 0.3;                ///< s taken off both ends, where the vehicle still rocks
-  double acceleration_spread = 0.05;  ///< m/s^2; standard deviation of the specific force in a window, each axis
-  double rate_spread = 0.003;         ///< rad/s; standard deviation of the angular rate in a window, each axis
-  double rate_mean = 0.003;           ///< rad/s; mean angular rate beyond the gyro's bias
-  double odometer_step = 0.002;       ///< m; the odometer may change by this much in a window; by twice in a standstill
+  double window = 1.0;   ///< s; each window is judged as a whole
+  double minimum = 2.0;  ///< s; shorter standstills are not reported
+  double margin = 0.3;   ///< s taken off both ends, where the vehicle still rocks
+  /// m/s^2; standard deviation of the specific force in a window, each axis, and change of its mean since the first
+  /// window of the standstill: a vehicle that sets off smoothly shows nothing else at first.
+  double acceleration_spread = 0.05;
+  double rate_spread = 0.003;    ///< rad/s; standard deviation of the angular rate in a window, each axis
+  double rate_mean = 0.003;      ///< rad/s; mean angular rate beyond the gyro's bias
+  double odometer_step = 0.002;  ///< m; the odometer may change by this much in a window; by twice in a standstill
   /// m/s; where GNSS tells a higher speed the vehicle does not stand, nor where its positions move by more than a
   /// window's way at that speed and three of their sigmas.
   double gnss_speed = 0.3;

@@ -22,8 +22,10 @@ struct ImuCheckOptions {
   std::size_t max_interpolated = 3;  ///< missing samples in a row that are interpolated; more split the run (Chen 4.1)
   double max_rate = 35.0;            ///< rad/s per axis; 2000 deg/s, the widest range of common gyroscopes
   double max_acceleration = 320.0;   ///< m/s^2 per axis; 32 g
-  double stuck_after = 0.25;         ///< s: all six channels unchanged for longer are a sensor that hangs
-  double max_disorder = 0.01;        ///< share of samples out of order above which the file is refused
+  /// s: all six channels unchanged for longer are a sensor that hangs, unless they came there or go on by two of its
+  /// counts at most: a quiet sensor of coarse resolution that stands.
+  double stuck_after = 0.25;
+  double max_disorder = 0.01;  ///< share of samples out of order above which the file is refused
 };
 
 struct CheckedImu {

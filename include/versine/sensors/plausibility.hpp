@@ -28,6 +28,7 @@ struct ImuPlausibilityOptions {
   double max_tilt = 0.8;           ///< rad between the measured gravity and the b-frame's down axis
   double max_mean_rate = 2.0;      ///< rad/s, mean over a second, in the liveliest twentieth of the recording
   double max_standing_rate = 0.1;  ///< rad/s, mean over the calmest tenth of the recording
+  double gyro_bias = 0.0;  ///< rad/s; sigma of the gyroscopes' bias: good ones must show the Earth's rate; 0: unknown
 };
 
 /// Gravity must have the right size (units) and lie along the down axis (axes); rates must be those of a vehicle
@@ -39,5 +40,10 @@ struct ImuPlausibilityOptions {
 /// position differences against the velocities, when the receiver gives them. Says nothing when there is no turn.
 [[nodiscard]] Expected<RunRecord> check_gnss_plausibility(const CheckedImu* imu, const Series<GnssSample>& gnss,
                                                           const std::string& file);
+
+/// The way over ground of the positions against that of the odometer: where latitude and longitude are swapped it is
+/// off by the cosine of one of them, even on a straight line. Says nothing below 20 m, nor where both ways round fit.
+[[nodiscard]] Expected<void> check_gnss_way(const Series<GnssSample>& gnss, const Series<OdometerSample>& odometer,
+                                            const std::string& file);
 
 }  // namespace versine::sensors

@@ -10,10 +10,18 @@ namespace versine::fusion {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-filter::Linearized zero_velocity(const InsMoment& m, const InsLayout& layout, double sigma) {
+filter::Linearized zero_velocity(const InsMoment& m, const InsLayout& layout, const Vector3d& mean, double seconds,
+                                 double sigma) {
   filter::Linearized l(3, layout.size());
-  l.z = m.estimate.nav.v_eb_n;
+  l.z = mean;
   l.H.middleCols<3>(layout.velocity.offset).setIdentity();
+  // Half a window ago the error of the velocity was less by what tilt and accelerometers have made since.
+  const geodesy::Geodetic& place = m.estimate.nav.position;
+  const Vector3d force_n = -geodesy::wgs84.gravity_ned(place.latitude, place.height);
+  l.H.middleCols<3>(layout.attitude.offset) = -0.5 * seconds * geodesy::skew(force_n);
+  l.H.middleCols<3>(layout.accelerometer_bias.offset) = -0.5 * seconds * m.C_nb;
+  l.H.middleCols<3>(layout.accelerometer_scale.offset) =
+      -0.5 * seconds * m.C_nb * (m.C_nb.transpose() * force_n).asDiagonal();
   l.R.diagonal().setConstant(sigma * sigma);
   return l;
 }
