@@ -165,7 +165,7 @@ class TomlReader final : public ConfigVisitor {
     const auto* node = find(key, {});
     if (node == nullptr) return have;
     const auto* array = node->as_array();
-    if (array == nullptr || !array->is_array_of_tables()) {
+    if (array == nullptr || (!array->empty() && !array->is_array_of_tables())) {
       wrong(key, *node, fmt::format("a list of tables, written [[{}{}]]", prefix_, key));
       return 0;
     }

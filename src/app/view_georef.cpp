@@ -10,6 +10,7 @@
 #include "review.hpp"
 #include "versine/core/units.hpp"
 #include "versine/io/input_stream.hpp"
+#include "view_georef_difference.hpp"
 #include "view_georef_series.hpp"
 #include "view_map.hpp"
 #include "view_survey_parts.hpp"
@@ -89,6 +90,7 @@ json journey(const json& j, const std::string& id, const std::string& recording,
 /// A finished georeferencing, ready to be asked by several threads.
 struct GeorefView {
   fs::path folder;
+  std::string crs;
   ViewNetwork network;
   std::map<std::string, JourneySeries> journeys;
   std::string text;
@@ -97,8 +99,9 @@ struct GeorefView {
 json verdict_of(const json& journeys, std::size_t failed) {
   std::size_t ambiguous = 0;
   for (const json& j : journeys) ambiguous += j["stretches"].empty() ? 0 : 1;
-  std::string text = fmt::format("{} journeys · {} ambiguous", journeys.size(), ambiguous);
-  if (failed > 0) text += fmt::format(" · {} recordings failed", failed);
+  std::string text =
+      fmt::format("{} journey{} · {} ambiguous", journeys.size(), journeys.size() == 1 ? "" : "s", ambiguous);
+  if (failed > 0) text += fmt::format(" · {} recording{} failed", failed, failed == 1 ? "" : "s");
   return {{"accepted", failed > 0 ? json(false) : json(nullptr)}, {"text", text}};
 }
 
@@ -124,20 +127,50 @@ std::map<std::string, double> begins(const json& recordings) {
   return out;
 }
 
-Expected<std::shared_ptr<GeorefView>> open(const fs::path& folder, const std::string& run_json) {
-  const fs::path index_file = folder / "georef.json";
-  const auto index_text = io::read_text(index_file);
-  if (!index_text) return tl::unexpected(index_text.error());
-  const json index = json::parse(*index_text, nullptr, false);
-  if (!index.is_object() || index.value("format", "") != format) {
-    return tl::unexpected(unusable(index_file, index.is_object() ? index.value("format", "no format") : "no JSON"));
+Expected<json> read_index(const fs::path& folder) {
+  const fs::path file = folder / "georef.json";
+  const auto text = io::read_text(file);
+  if (!text) return tl::unexpected(text.error());
+  json index = json::parse(*text, nullptr, false);
+  if (index.is_object() && index.value("format", "") == format) return index;
+  return tl::unexpected(unusable(file, index.is_object() ? index.value("format", "no format") : "no JSON"));
+}
+
+/// Every journey of a result; `count` tells how many positions one has.
+json journeys_of(const json& index, const geodesy::Projection& projection,
+                 const std::function<std::size_t(const std::string& id)>& count) {
+  json out = json::array();
+  std::size_t number = 0;
+  for (const json& r : index.at("recordings")) {
+    ++number;
+    const std::string name = r.value("name", fmt::format("recording {}", number));
+    for (const json& j : r.value("journeys", json::array())) {
+      const std::string id = id_of(number, j);
+      out.push_back(journey(j, id, name, count(id), projection));
+    }
   }
+  return out;
+}
+
+std::string title_of(const fs::path& folder) {
+  const auto text = io::read_text(folder / "run.json");
+  const json run = text ? json::parse(*text, nullptr, false) : json();
+  const std::string title = run.is_object() ? run.value("settings", json::object()).value("title", "") : "";
+  return title.empty() ? fs::absolute(folder).lexically_normal().filename().string() : title;
+}
+
+Expected<std::shared_ptr<GeorefView>> open(const fs::path& folder, const std::string& run_json,
+                                           const std::optional<fs::path>& compare) {
+  const auto read = read_index(folder);
+  if (!read) return tl::unexpected(read.error());
+  const json& index = *read;
   const json& network = index.at("network");
   const std::string crs = network.value("crs", "");
   const auto projection = geodesy::Projection::create(crs);
   if (!projection) return tl::unexpected(projection.error());
   auto view = std::make_shared<GeorefView>();
   view->folder = folder;
+  view->crs = crs;
   auto map = read_view_network(folder / network.value("geojson", "network.geojson"), *projection);
   if (!map) return tl::unexpected(map.error());
   view->network = std::move(*map);
@@ -145,22 +178,25 @@ Expected<std::shared_ptr<GeorefView>> open(const fs::path& folder, const std::st
   if (!series) return tl::unexpected(series.error());
   view->journeys = std::move(*series);
 
-  json journeys = json::array(), failures = json::array();
+  json failures = json::array();
   std::size_t number = 0;
   for (const json& r : index.at("recordings")) {
     ++number;
-    const std::string name = r.value("name", fmt::format("recording {}", number));
-    if (r.contains("error")) failures.push_back({{"recording", name}, {"error", r["error"]}});
-    for (const json& j : r.value("journeys", json::array())) {
-      const std::string id = id_of(number, j);
-      const auto found = view->journeys.find(id);
-      const std::size_t count = found == view->journeys.end() ? 0 : found->second.size();
-      journeys.push_back(journey(j, id, name, count, *projection));
-    }
+    if (!r.contains("error")) continue;
+    failures.push_back({{"recording", r.value("name", fmt::format("recording {}", number))}, {"error", r["error"]}});
+  }
+  json journeys = journeys_of(index, *projection, [&](const std::string& id) {
+    const auto found = view->journeys.find(id);
+    return found == view->journeys.end() ? 0 : found->second.size();
+  });
+  if (compare) {
+    const auto other = read_index(*compare);
+    if (!other) return tl::unexpected(other.error());
+    add_difference(journeys, journeys_of(*other, *projection, [](const std::string&) { return std::size_t{0}; }));
   }
   const json verdict = verdict_of(journeys, failures.size());
-  const std::string subtitle =
-      fmt::format("{} recordings · map {}", number, fs::path(network.value("file", "")).filename().string());
+  const std::string subtitle = fmt::format("{} recording{} · map {}", number, number == 1 ? "" : "s",
+                                           fs::path(network.value("file", "")).filename().string());
   json georef{{"network",
                {{"tracks", network.value("tracks", view->network.names.size())},
                 {"names", view->network.names},
@@ -170,6 +206,7 @@ Expected<std::shared_ptr<GeorefView>> open(const fs::path& folder, const std::st
               {"failures", std::move(failures)},
               {"strips", georef_strips()},
               {"constraintsFile", constraints_file(folder).filename().string()}};
+  if (compare) georef["compare"] = title_of(*compare);
   const SurveyFiles frame{.folder = folder, .run = json::parse(run_json), .results = {}, .settings = {}};
   view->text = view_frame("georef", frame, crs, subtitle, verdict, std::move(georef));
   return view;
@@ -183,21 +220,16 @@ fs::path constraints_file(const fs::path& folder) {
 
 Expected<ViewContent> open_georef_view(const fs::path& folder, const std::string& run_json,
                                        const std::optional<fs::path>& compare) {
-  if (compare) {
-    return fail({.file = folder.string(),
-                 .found = "a georeferencing that is to be compared",
-                 .expected = "two results of versine survey or versine geometry",
-                 .advice = "open each georeferencing by itself, or join positions.csv of both by time"});
-  }
   Expected<std::shared_ptr<GeorefView>> opened = tl::unexpected(Error{});
   try {
-    opened = open(folder, run_json);
+    opened = open(folder, run_json, compare);
   } catch (const json::exception& problem) {  // a key that is missing or of another kind
     return tl::unexpected(unusable(folder / "georef.json", problem.what()));
   }
   if (!opened) return tl::unexpected(opened.error());
   ViewContent content;
   const auto view = *opened;
+  content.crs = view->crs;
   content.result_json = [view] { return view->text; };
   content.series = [view](const std::string& id, double from, double to,
                           std::size_t buckets) -> std::optional<std::string> {

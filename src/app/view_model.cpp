@@ -12,6 +12,7 @@
 #include "versine/app/version.hpp"
 #include "versine/app/view_georef.hpp"
 #include "versine/app/view_survey.hpp"
+#include "versine/io/background_map.hpp"
 #include "versine/io/input_stream.hpp"
 
 namespace versine::app {
@@ -60,8 +61,8 @@ Expected<void> write_marks(const fs::path& path, const std::string& text) {
 /// Follows one folder: opens what is there, and again when a job has replaced it. Several threads ask at once.
 class Follower {
  public:
-  Follower(fs::path folder, std::optional<fs::path> compare)
-      : folder_(std::move(folder)), compare_(std::move(compare)) {}
+  Follower(fs::path folder, std::optional<fs::path> compare, std::string background)
+      : folder_(std::move(folder)), compare_(std::move(compare)), background_(std::move(background)) {}
 
   Expected<void> start() {
     const std::lock_guard lock(mutex_);
@@ -91,7 +92,7 @@ class Follower {
   std::string progress() {
     (void)content();
     const auto job = running_job(folder_);
-    json out{{"running", job.has_value()}};
+    json out{{"running", job.has_value()}, {"background", background_}};
     {
       const std::lock_guard lock(mutex_);
       out["generation"] = generation_;
@@ -151,6 +152,7 @@ class Follower {
 
   fs::path folder_;
   std::optional<fs::path> compare_;
+  std::string background_;  ///< its name; empty: none
   std::mutex mutex_;
   std::shared_ptr<const ViewContent> content_;
   std::string failure_;
@@ -193,8 +195,15 @@ Expected<ViewContent> open_view(const fs::path& given, const std::optional<fs::p
                .advice = "its own files show it; 'versine report' makes a page of it where it can"});
 }
 
-Expected<ViewContent> follow_view(const fs::path& folder, const std::optional<fs::path>& compare) {
-  auto follower = std::make_shared<Follower>(cleaned(folder), compare);
+Expected<ViewContent> follow_view(const fs::path& folder, const std::optional<fs::path>& compare,
+                                  const std::optional<fs::path>& background) {
+  std::shared_ptr<const io::BackgroundMap> ground;
+  if (background) {
+    auto opened = io::BackgroundMap::open(*background);
+    if (!opened) return tl::unexpected(opened.error());
+    ground = std::make_shared<const io::BackgroundMap>(std::move(*opened));
+  }
+  auto follower = std::make_shared<Follower>(cleaned(folder), compare, ground ? ground->name() : std::string());
   if (auto started = follower->start(); !started) return tl::unexpected(started.error());
   ViewContent out;
   out.result_json = [follower] { return follower->result(); };
@@ -220,6 +229,15 @@ Expected<ViewContent> follow_view(const fs::path& folder, const std::optional<fs
     const auto now = follower->content();
     return now && now->report ? now->report() : std::nullopt;
   };
+  if (ground) {
+    out.background = [follower, ground](const std::array<double, 4>& window, int width,
+                                        int height) -> std::optional<std::string> {
+      const auto now = follower->content();
+      if (!now || now->crs.empty()) return std::nullopt;
+      auto png = ground->png(now->crs, window, width, height);
+      return png ? std::optional(std::move(*png)) : std::nullopt;
+    };
+  }
   const fs::path marks = marks_file(cleaned(folder));
   out.marks_json = [marks] {
     const auto text = io::read_text(marks);

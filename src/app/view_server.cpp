@@ -137,6 +137,20 @@ struct ViewServer::Impl {
       if (!body) return refuse(response, 404, "no such part of a map in this result");
       send(response, *body, "application/octet-stream");
     });
+    server.Get("/api/background", [this](const httplib::Request& request, httplib::Response& response) {
+      constexpr double infinity = std::numeric_limits<double>::infinity();
+      std::array<double, 4> window{};
+      const std::array<const char*, 4> edges{"west", "south", "east", "north"};
+      for (std::size_t i = 0; i < 4; ++i) window[i] = number(request, edges[i]).value_or(infinity);
+      const double width = number(request, "width").value_or(0.0), height = number(request, "height").value_or(0.0);
+      const bool sound = window[0] < window[2] && window[1] < window[3] && window[2] < infinity &&
+                         window[3] < infinity && width >= 1.0 && width <= 4096.0 && height >= 1.0 && height <= 4096.0;
+      const auto png = sound && content.background
+                           ? content.background(window, static_cast<int>(width), static_cast<int>(height))
+                           : std::nullopt;
+      if (!png) return refuse(response, 404, "no background here");
+      send(response, *png, "image/png");
+    });
     // The report needs the token, too; a link cannot send a header, so the page fetches it and opens it as a blob.
     server.Get("/api/report", [this](const httplib::Request&, httplib::Response& response) {
       const auto text = content.report ? content.report() : std::nullopt;

@@ -241,9 +241,11 @@ Expected<ViewContent> open_survey_view(const fs::path& folder, const std::string
     }
     return open_trajectory_view(std::move(files));
   }
+  const std::string crs = files.results.value("crs", "");
   auto view = SurveyView::open(std::move(files), compare);
   if (!view) return tl::unexpected(view.error());
   ViewContent content;
+  content.crs = crs;
   content.result_json = [v = *view] { return v->json_text(); };
   content.series = [v = *view](const std::string& id, double from, double to, std::size_t buckets) {
     return v->series(id, from, to, buckets);

@@ -198,6 +198,7 @@ Expected<ViewContent> open_trajectory_view(SurveyFiles files) {
   view->text =
       view_frame("survey", files, crs, subtitle, {{"accepted", nullptr}, {"text", verdict}}, std::move(survey));
   ViewContent content;
+  content.crs = crs;
   content.result_json = [view] { return view->text; };
   content.series = [view](const std::string& id, double from, double to,
                           std::size_t buckets) -> std::optional<std::string> {

@@ -102,12 +102,21 @@ std::vector<std::vector<Cell>> cells_of(const RawTable& raw, const std::vector<s
   return out;
 }
 
+namespace {
+std::vector<std::vector<Cell>> translated(std::vector<std::vector<Cell>> rows, const Texts& t) {
+  for (auto& row : rows) {
+    for (Cell& cell : row) cell.text = t.phrase(cell.text);
+  }
+  return rows;
+}
+}  // namespace
+
 void add_record(Pages& pages, const Facts& f, const Texts& t) {
   pages.begin("record", t("record.title"));
   Table warnings{.id = "warnings", .title = t("record.warnings"), .empty = t("record.no_warnings")};
   warnings.columns = {{t("record.number")}, {t("record.warning"), Anchor::start, true}};
   for (std::size_t i = 0; i < f.warnings.size(); ++i) {
-    warnings.rows.push_back({{fmt::format("{}", i + 1)}, {f.warnings[i]}});
+    warnings.rows.push_back({{fmt::format("{}", i + 1)}, {t.phrase(f.warnings[i])}});
   }
   double y = pages.add(warnings);
   Table findings{.id = "findings", .title = t("record.findings"), .empty = t("record.no_findings")};
@@ -118,7 +127,7 @@ void add_record(Pages& pages, const Facts& f, const Texts& t) {
                       {t("record.count")},
                       {t("record.action"), Anchor::start},
                       {t("record.detail"), Anchor::start, true}};
-  findings.rows = cells_of(f.findings, {"sensor", "kind", "from", "to_s", "count", "action", "detail"});
+  findings.rows = translated(cells_of(f.findings, {"sensor", "kind", "from", "to_s", "count", "action", "detail"}), t);
   y = pages.add(findings, y + 5.0);
   Table rejections{.id = "rejections",
                    .title = t("record.rejections"),
@@ -130,7 +139,7 @@ void add_record(Pages& pages, const Facts& f, const Texts& t) {
                         {t("record.last_s")},
                         {t("record.worst")},
                         {t("record.reason"), Anchor::start, true}};
-  rejections.rows = cells_of(f.rejections, {"sensor", "count", "first_s", "last_s", "worst", "reason"});
+  rejections.rows = translated(cells_of(f.rejections, {"sensor", "count", "first_s", "last_s", "worst", "reason"}), t);
   pages.add(rejections, y + 5.0);
 }
 

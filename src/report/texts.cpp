@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -73,6 +74,26 @@ Expected<void> same_keys(const Map& ours, const Map& theirs, const std::string& 
   return {};
 }
 
+/// What stands at the places of a pattern: "{} ends" fits "3 ends" with "3". Nothing when it does not fit.
+std::optional<std::vector<std::string>> values_in(std::string_view text, std::string_view pattern) {
+  std::vector<std::string> out;
+  std::size_t place = pattern.find("{}");
+  if (!text.starts_with(pattern.substr(0, place))) return std::nullopt;
+  text.remove_prefix(std::min(place, text.size()));
+  while (place != std::string_view::npos) {
+    pattern.remove_prefix(place + 2);
+    place = pattern.find("{}");
+    const std::string_view behind = pattern.substr(0, place);
+    const bool last = place == std::string_view::npos;
+    if (last && !text.ends_with(behind)) return std::nullopt;
+    const std::size_t end = last ? text.size() - behind.size() : text.find(behind);
+    if (end == std::string_view::npos) return std::nullopt;
+    out.emplace_back(text.substr(0, end));
+    text.remove_prefix(end + behind.size());
+  }
+  return text.empty() ? std::optional(out) : std::nullopt;
+}
+
 }  // namespace
 
 const std::vector<std::string>& languages() {
@@ -116,8 +137,27 @@ const std::string& Texts::operator()(std::string_view key) const {
 }
 
 std::string Texts::phrase(const std::string& english) const {
-  const auto it = texts_.find("phrase." + english);
-  return it == texts_.end() ? english : it->second;
+  const auto exact = [&](const std::string& text) {
+    const auto it = texts_.find("phrase." + text);
+    return it == texts_.end() ? text : it->second;
+  };
+  if (texts_.contains("phrase." + english)) return exact(english);
+  for (auto it = texts_.lower_bound("phrase."); it != texts_.end() && it->first.starts_with("phrase."); ++it) {
+    const std::string_view pattern = std::string_view(it->first).substr(7);
+    if (pattern.find("{}") == std::string_view::npos) continue;
+    const auto values = values_in(english, pattern);
+    if (!values) continue;
+    std::string out = it->second;
+    std::size_t at = 0;
+    for (const std::string& value : *values) {
+      at = out.find("{}", at);
+      const std::string word = exact(value);
+      out.replace(at, 2, word);
+      at += word.size();
+    }
+    return out;
+  }
+  return english;
 }
 
 std::string Texts::quantity(const std::string& column) const {

@@ -41,6 +41,14 @@ TEST(Texts, ColumnsHaveNames) {
   EXPECT_EQ(german->phrase("positive upwards"), "positiv nach oben");
   EXPECT_EQ(german->phrase("what no one translated"), "what no one translated");
   EXPECT_EQ(Texts().quantity("something_else"), "something_else");
+  // Sentences with values.
+  EXPECT_EQ(
+      german->phrase("odometer rejected 11 times in a row until 14.5 s: the filter's covariance was enlarged instead"),
+      "Wegmesser: 11-mal hintereinander verworfen bis 14.5 s; statt dessen wurde die Kovarianz des Filters vergrößert");
+  EXPECT_EQ(german->phrase("3.25 m of track off the design: no deviations"),
+            "3.25 m Gleis außerhalb des Entwurfs: keine Abweichungen");
+  EXPECT_EQ(german->phrase("3.25 m of track off the moon: no deviations"),
+            "3.25 m of track off the moon: no deviations");
 }
 
 TEST(Texts, ATranslationIsAFile) {

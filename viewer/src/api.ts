@@ -76,6 +76,17 @@ export async function getMap(part: string): Promise<Points> {
   return { origin: [easting, northing], start: new Uint32Array(buffer, 24, groups + 1), places: new Float32Array(buffer, 28 + 4 * groups, 2 * points) };
 }
 
+/** The background of a window in the result's map, as a picture; null where there is none. */
+export async function getBackground([west, south, east, north]: number[], width: number, height: number): Promise<ImageBitmap | null> {
+  const query = new URLSearchParams(Object.entries({ west, south, east, north, width, height }).map(([k, v]) => [k, String(v)]));
+  try {
+    return await createImageBitmap(await (await request(`api/background?${query}`)).blob());
+  } catch (error) {
+    if (error instanceof ServerError) return null;
+    throw error;
+  }
+}
+
 export async function getConstraints(): Promise<Constraint[]> {
   return (await request('api/constraints')).json();
 }

@@ -17,6 +17,7 @@ export interface Result {
   survey?: Survey;
   georef?: Georef;
   failure?: string; // why there is nothing to see
+  background?: string; // as in Progress
   partial?: string; // stage that a running job has come to; nothing here is final
   warnings: string[];
   findings: Finding[];
@@ -27,6 +28,7 @@ export interface Result {
 /** GET /api/progress: whether a job is writing this result, and which generation of the result the server has open. */
 export interface Progress {
   running: boolean;
+  background: string; // name of the picture under the plan; empty: none
   generation: number;
   opened: boolean;
   failure: string;
@@ -147,6 +149,15 @@ export interface Georef {
   failures: { recording: string; error: string }[];
   strips: StripInfo[]; // of every journey; the series are `${journey.id}:t:${strip.id}` over time, `:d:` over distance
   constraintsFile: string;
+  compare?: string; // title of the run that is compared
+}
+
+/** Where path 1 is on other tracks than path 1 of the other run. */
+export interface Difference {
+  fromM: number; // m on path 1
+  toM: number;
+  here: string[]; // tracks
+  there: string[];
 }
 
 export interface Journey {
@@ -162,6 +173,8 @@ export interface Journey {
   entropy: number; // nat
   hypotheses: Hypothesis[]; // the most probable first
   stretches: Stretch[]; // ambiguous ones, least certain first
+  other?: Hypothesis | null; // path 1 of this journey in the run that is compared; null: it has none
+  differs?: Difference[];
 }
 
 export interface Hypothesis {

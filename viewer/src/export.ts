@@ -15,6 +15,7 @@ export interface Exported {
   axis: Axis;
   result: Result;
   marks: Mark[];
+  map?: HTMLCanvasElement | null; // above the strips in the picture
   redraw(): void; // after a change of theme
 }
 
@@ -29,14 +30,15 @@ function save(name: string, blob: Blob): void {
 const fileName = (title: string, ending: string) => `${title.replace(/[^\p{L}\p{N}]+/gu, '-')}.${ending}`;
 
 /** The strips as they are seen, one below the other, with their titles. */
-function exportPng({ strips, result, axis, view }: Exported): void {
+function exportPng({ strips, result, axis, view, map }: Exported): void {
   const canvases = strips.map((s) => s.canvas).filter((c): c is HTMLCanvasElement => c !== null);
   if (canvases.length === 0) return;
   const label = 200 * devicePixelRatio;
   const head = 30 * devicePixelRatio;
   const out = document.createElement('canvas');
   out.width = label + Math.max(...canvases.map((c) => c.width));
-  out.height = head + canvases.reduce((sum, c) => sum + c.height, 0);
+  const above = map ? Math.round((map.height * out.width) / map.width) : 0;
+  out.height = head + above + canvases.reduce((sum, c) => sum + c.height, 0);
   const ctx = out.getContext('2d')!;
   ctx.fillStyle = css('--background');
   ctx.fillRect(0, 0, out.width, out.height);
@@ -46,7 +48,8 @@ function exportPng({ strips, result, axis, view }: Exported): void {
     ctx.fillText(text, x, y);
   };
   write(`${result.title} · ${axis.readout(view.from)} to ${axis.readout(view.to)}`, 8, 20 * devicePixelRatio, 'bold', '--text');
-  let y = head;
+  if (map) ctx.drawImage(map, 0, head, out.width, above);
+  let y = head + above;
   strips.forEach((strip, i) => {
     write(strip.info.title, 8, y + 18 * devicePixelRatio, 'bold', '--text');
     write([strip.info.note, strip.info.unit].filter(Boolean).join(' · '), 8, y + 34 * devicePixelRatio, 'normal', '--muted');
@@ -58,17 +61,23 @@ function exportPng({ strips, result, axis, view }: Exported): void {
 
 const number = (v: number) => (Number.isFinite(v) ? String(Math.round(v * 1e5) / 1e5) : '');
 
-/** Every sample of the visible stretch under the names of the result's own CSV; strips of another step apart. */
+/** Every sample of the visible stretch under the names of the result's own CSV. Strips need not be sampled at the same
+ * places: a field is empty where its strip has no sample. */
 export async function csvOf({ strips, view, axis }: Exported): Promise<string> {
   const columns = await Promise.all(strips.map(async (s) => ({ id: s.info.id, series: await s.store.samples(view.from, view.to) })));
-  const grid = columns[0].series.x;
-  const same = columns.filter((c) => c.series.x.length === grid.length);
-  const head = [axis.unit === 'km' ? 'distance_m' : 'time_s', 'place', ...same.flatMap((c) => (c.series.sigma ? [c.id, `sigma_${c.id}`] : [c.id]))];
-  const rows = Array.from(grid, (x, i) => [
-    x.toFixed(3),
-    axis.text(x, 3),
-    ...same.flatMap((c) => (c.series.sigma ? [number(c.series.min[i]), number(c.series.sigma[i])] : [number(c.series.min[i])])),
-  ]);
+  const grid = [...new Set(columns.flatMap((c) => [...c.series.x]))].sort((a, b) => a - b);
+  const fields = columns.map(({ series }) => {
+    const { x, min, sigma } = series;
+    let next = 0;
+    return (place: number): string[] => {
+      while (next < x.length && x[next] < place) ++next;
+      const here = x[next] === place;
+      const value = here ? number(min[next]) : '';
+      return sigma ? [value, here ? number(sigma[next]) : ''] : [value];
+    };
+  });
+  const head = [axis.unit === 'km' ? 'distance_m' : 'time_s', 'place', ...columns.flatMap((c) => (c.series.sigma ? [c.id, `sigma_${c.id}`] : [c.id]))];
+  const rows = grid.map((x) => [x.toFixed(3), axis.text(x, 3), ...fields.flatMap((f) => f(x))]);
   return [head, ...rows].map((row) => row.join(',')).join('\n') + '\n';
 }
 
@@ -123,8 +132,8 @@ export function showExports(what: Exported): void {
     ['PNG: the strips as they are seen', () => exportPng(what)],
     ['CSV: every sample of what is seen', () => void csvOf(what).then((text) => save(fileName(result.title, 'csv'), new Blob([text], { type: 'text/csv' })))],
     ['PDF: this page, through the print dialog', () => print(what)],
-    ['GPX: exceedances and marks', () => save(fileName(result.title, 'gpx'), new Blob([gpxOf(what)], { type: 'application/gpx+xml' }))],
   ];
+  if (result.survey) choices.push(['GPX: exceedances and marks', () => save(fileName(result.title, 'gpx'), new Blob([gpxOf(what)], { type: 'application/gpx+xml' }))]);
   const list = element('div', { class: 'choices' });
   for (const [label, action] of choices) {
     const button = element('button', { type: 'button' }, label);

@@ -5,7 +5,9 @@ import { TimeAxis, type Axis } from './axis';
 import { Chainage } from './chainage';
 import { Choice } from './choice';
 import type { Georef, Journey, Result, Stretch } from './contract';
+import { differenceList } from './differences';
 import { askPlace } from './dialogs';
+import { showExports } from './export';
 import { GeorefMap } from './georef_map';
 import { header } from './header';
 import { bindKeys, showHelp } from './keys';
@@ -15,7 +17,7 @@ import { Review } from './review';
 import type { Screen } from './screen';
 import { labelWidth, scaleWidth, Strip, valueWidth } from './strips';
 import { StretchTable, type Case } from './stretches';
-import { element, minus, percent, speak } from './text';
+import { element, minus, percent, shortName, speak } from './text';
 import { nextTheme } from './theme';
 import { View } from './view';
 
@@ -51,7 +53,7 @@ export class GeorefScreen implements Screen {
   ) {
     this.georef = result.georef!;
     this.view = new View(0, 1, this.ofJourney.signal);
-    this.map = new GeorefMap(this.georef, result.crs, (track, place) => this.picked(track, place));
+    this.map = new GeorefMap(this.georef, result.crs, result.background, (track, place) => this.picked(track, place));
     this.table = new StretchTable(this.georef.journeys, this.review, (c) => void this.openStretch(c));
     this.choice = new Choice(this.review, this.georef.constraintsFile, { preview: (path) => this.map.choose(path), decided: () => this.table.show() });
   }
@@ -82,16 +84,17 @@ export class GeorefScreen implements Screen {
   }
 
   private layout(): void {
-    const top = header(this.result, this.readout, { theme: () => this.retheme(), help: showHelp, exports: () => window.print(), report: () => void openReport() });
+    const top = header(this.result, this.readout, { theme: () => this.retheme(), help: showHelp, exports: () => this.exports(), report: () => void openReport() });
     for (const j of this.georef.journeys) {
       const best = j.hypotheses[0];
-      this.journeys.append(element('option', { value: j.id }, `${j.recording} · ${j.number} · ${(j.length / 1000).toFixed(2)} km · ${percent(best?.probability ?? null)}`));
+      this.journeys.append(element('option', { value: j.id }, `${shortName(j.recording)} · ${j.number} · ${(j.length / 1000).toFixed(2)} km · ${percent(best?.probability ?? null)}`));
     }
     this.journeys.addEventListener('change', () => void this.open(this.georef.journeys.find((j) => j.id === this.journeys.value)!));
     const side = element('aside', { 'aria-label': 'What is uncertain' });
     const pick = element('div', { class: 'pick' });
     pick.append(this.journeys);
-    side.append(pick, this.track, this.table.element, this.choice.element, this.failures());
+    const differences = differenceList(this.georef, (journey, d) => void this.openPlace(journey, d.fromM, d.toM));
+    side.append(pick, this.track, differences, this.table.element, this.choice.element, this.failures());
     const main = element('main');
     main.append(this.centre);
     this.root.replaceChildren(top, this.map.element, side, main);
@@ -160,6 +163,16 @@ export class GeorefScreen implements Screen {
     speak(`${percent(stretch.probability)} for ${stretch.alternative.join(' ')} instead of ${stretch.taken.join(' ')}`);
   }
 
+  /** Shows a piece of path 1 on map and strips. */
+  private async openPlace(journey: Journey, from: number, to: number): Promise<void> {
+    if (journey !== this.journey) await this.open(journey);
+    const [a, b] = this.overDistance ? [from, to] : [this.timeAt(from), this.timeAt(to)];
+    const margin = Math.max(0.5 * (b - a), 10);
+    this.view.zoom(a - margin, b + margin);
+    this.view.moveCursor((a + b) / 2);
+    this.map.zoomTo(journey.hypotheses[0], from - 50, to + 50);
+  }
+
   /** Place on path 1 of a place of the axis. */
   private onPath({ from, to }: { from: number; to: number }): [number, number] {
     if (this.overDistance) return [from, to];
@@ -223,6 +236,14 @@ export class GeorefScreen implements Screen {
     this.rebuild();
   }
 
+  private exports(): void {
+    const redraw = () => {
+      this.map.style();
+      this.rebuild();
+    };
+    showExports({ strips: this.strips, view: this.view, axis: this.axis, result: this.result, marks: [], map: this.map.canvas, redraw });
+  }
+
   private keys(): void {
     const width = () => this.view.to - this.view.from;
     const zoom = (factor: number, at = this.view.cursor) => this.view.zoom(at - (at - this.view.from) * factor, at + (this.view.to - at) * factor);
@@ -248,6 +269,7 @@ export class GeorefScreen implements Screen {
       Enter: () => (document.activeElement instanceof HTMLButtonElement ? document.activeElement.click() : void this.choice.confirm()),
       g: () => askPlace(this.axis, this.view),
       d: () => this.retheme(),
+      e: () => this.exports(),
       p: () => this.result.report && openReport(),
       '?': showHelp,
     });

@@ -14,6 +14,7 @@ import RenderFeature from 'ol/render/Feature';
 import VectorSource from 'ol/source/Vector';
 import { Circle, Fill, RegularShape, Stroke, Style, Text } from 'ol/style';
 import { getMap } from './api';
+import { backgroundLayer } from './background';
 import type { Georef, Hypothesis, Journey, Points } from './contract';
 import { mapMetres } from './plan';
 import { along, apart, offset, part, type Place } from './polyline';
@@ -76,16 +77,18 @@ export class GeorefMap {
   constructor(
     private readonly georef: Georef,
     crs: string,
+    background: string | undefined,
     private readonly pick: (track: string | null, place: number | null) => void,
   ) {
     const target = element('div', { class: 'plan-map', role: 'img', 'aria-label': 'Network, paths and fixes; the tables beside it hold the same in words' });
     this.element.append(target);
+    const projection = mapMetres(crs);
     this.map = new OlMap({
       target,
-      layers: [...this.levels, new VectorLayer({ source: this.fixes, maxResolution: 8 }), new VectorLayer({ source: this.ribbons }), new VectorLayer({ source: this.pointer })],
+      layers: [...backgroundLayer(background, projection), ...this.levels, new VectorLayer({ source: this.fixes, maxResolution: 8 }), new VectorLayer({ source: this.ribbons }), new VectorLayer({ source: this.pointer })],
       controls: [new ScaleLine({ units: 'metric', minWidth: 60 })],
       interactions: interactions({ keyboard: false }),
-      view: new OlView({ projection: mapMetres(crs), center: [0, 0], resolution: 1, constrainResolution: false }),
+      view: new OlView({ projection, center: [0, 0], resolution: 1, constrainResolution: false }),
     });
     this.map.on('singleclick', (event) => {
       const track = this.map.forEachFeatureAtPixel(event.pixel, (f) => (f.get('track') as string | undefined) ?? null, { hitTolerance: 6, layerFilter: (l) => l === this.levels[0] }) ?? null;
@@ -186,6 +189,10 @@ export class GeorefMap {
     if (this.journey) void this.show(this.journey);
   }
 
+  get canvas(): HTMLCanvasElement | null {
+    return this.element.querySelector('canvas');
+  }
+
   dispose(): void {
     this.map.setTarget(undefined);
     this.map.dispose();
@@ -205,9 +212,21 @@ export class GeorefMap {
     if (!this.journey) return;
     const best = this.journey.hypotheses[0];
     const shared = new Set(best?.tracks.map((t) => t.id));
+    if (this.journey.other) this.drawOther(this.journey.other, shared);
     for (const h of [...this.journey.hypotheses].reverse()) {
       const pieces = h === best ? [part(h, h.from, h.to)] : spans(h.tracks.filter((t) => !shared.has(t.id))).map((t) => part(h, t.from, t.to));
       for (const piece of pieces) if (piece.length > 1) this.ribbons.addFeature(this.ribbon(h, piece, h === best));
+    }
+  }
+
+  /** Path 1 of another run, dotted, where it is on other tracks. */
+  private drawOther(other: Hypothesis, shared: Set<string>): void {
+    for (const span of spans(other.tracks.filter((t) => !shared.has(t.id)))) {
+      const piece = part(other, span.from, span.to);
+      if (piece.length < 2) continue;
+      const feature = new Feature(new LineString(piece));
+      feature.setStyle((_f, resolution) => new Style({ geometry: new LineString(offset(piece, -4 * resolution)), stroke: new Stroke({ color: css('--text'), width: 3, lineDash: [1, 6] }) }));
+      this.ribbons.addFeature(feature);
     }
   }
 

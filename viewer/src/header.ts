@@ -13,6 +13,7 @@ export interface HeaderActions {
 export function header(result: Result, readout: HTMLElement, actions: HeaderActions): HTMLElement {
   const bar = element('header');
   const compared = result.survey?.compare;
+  const beside = result.georef?.compare;
   const { accepted, text, profile, source } = result.verdict;
   const state = accepted === null ? '' : accepted ? 'good' : 'bad';
   const glyph = accepted === null ? '' : accepted ? '✓ ' : '■ ';
@@ -26,7 +27,7 @@ export function header(result: Result, readout: HTMLElement, actions: HeaderActi
   bar.append(
     element('h1', { title: `${result.folder}, Versine ${result.version}` }, result.title),
     verdict,
-    element('span', { class: 'subtitle' }, compared ? `minus ${compared} · ${result.subtitle}` : result.subtitle),
+    element('span', { class: 'subtitle' }, compared ? `minus ${compared} · ${result.subtitle}` : beside ? `against ${beside} · ${result.subtitle}` : result.subtitle),
     element('span', { class: 'progress', role: 'status' }),
     readout,
     button('Theme', 'D', actions.theme),

@@ -50,7 +50,7 @@ async function follow(screen: Screen, generation: number): Promise<void> {
       if (progress.generation !== generation) {
         generation = progress.generation;
         screen.dispose();
-        screen = await show(await getResult());
+        screen = await show({ ...(await getResult()), background: progress.background });
       }
       tell(screen, progress);
     } catch (error) {
@@ -64,7 +64,7 @@ async function follow(screen: Screen, generation: number): Promise<void> {
 initTheme();
 try {
   const [progress, result] = await Promise.all([getProgress(), getResult()]);
-  const screen = await show(result);
+  const screen = await show({ ...result, background: progress.background });
   tell(screen, progress);
   void follow(screen, progress.generation);
 } catch (error) {

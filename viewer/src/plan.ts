@@ -14,6 +14,7 @@ import VectorLayer from 'ol/layer/Vector';
 import Projection from 'ol/proj/Projection';
 import VectorSource from 'ol/source/Vector';
 import { Fill, RegularShape, Circle, Stroke, Style } from 'ol/style';
+import { backgroundLayer } from './background';
 import { lowerBound } from './pyramid';
 import type { Polyline, Survey } from './contract';
 import { element } from './text';
@@ -41,18 +42,20 @@ export class Plan {
   constructor(
     private readonly survey: Survey,
     crs: string,
+    background: string | undefined,
     go: (x: number) => void,
   ) {
     // A PROJ string is too long for a heading; an authority's code says all.
     this.element.append(element('h2', { title: crs }, `Plan · ${/^[A-Z]+:\d+$/.test(crs) ? crs : 'project map'}`));
     const target = element('div', { class: 'plan-map' });
     this.element.append(target);
+    const projection = mapMetres(crs);
     this.map = new OlMap({
       target,
-      layers: [new VectorLayer({ source: this.lines })],
+      layers: [...backgroundLayer(background, projection), new VectorLayer({ source: this.lines })],
       controls: [new ScaleLine({ units: 'metric', minWidth: 60 })],
       interactions: interactions({ keyboard: false }),
-      view: new OlView({ projection: mapMetres(crs), center: [0, 0], resolution: 1, constrainResolution: false }),
+      view: new OlView({ projection, center: [0, 0], resolution: 1, constrainResolution: false }),
     });
     this.map.on('singleclick', (event) => {
       const x = this.nearest(event.coordinate[0], event.coordinate[1]);

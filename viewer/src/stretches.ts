@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import type { Evidence, Journey, Stretch } from './contract';
 import type { Review } from './review';
-import { element, minus, percent } from './text';
+import { element, minus, percent, shortName } from './text';
 
 export interface Case {
   journey: Journey;
@@ -66,7 +66,8 @@ export class StretchTable {
     const row = element('tr');
     const decided = this.review.decided(journey, stretch);
     row.append(element('th', { scope: 'row' }, `${decided ? '✓ ' : ''}${percent(stretch.probability)}`));
-    const link = element('button', { type: 'button' }, `${journey.recording} · ${journey.number}`);
+    const link = element('button', { type: 'button' }, `${shortName(journey.recording)} · ${journey.number}`);
+    link.title = journey.recording;
     link.addEventListener('click', () => this.goTo(index));
     row.insertCell().append(link);
     row.insertCell().textContent = stretch.taken.join(' ');

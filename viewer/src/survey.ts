@@ -54,7 +54,7 @@ export class SurveyScreen implements Screen {
     const before = Object.hasOwn(result, 'partial') ? document.documentElement.dataset.tab : undefined;
     this.tab = before ?? (survey.compare ? 'difference' : (survey.tabs[0]?.id ?? 'notes'));
     this.strips = survey.strips.map((info) => this.strip(info));
-    this.plan = new Plan(survey, result.crs, (x) => this.view.goTo(x));
+    this.plan = new Plan(survey, result.crs, result.background, (x) => this.view.goTo(x));
     this.overview = new Overview(this.view, this.axis, survey.exceedances, survey.controlPoints);
     this.table = new ExceedanceTable(survey.exceedances, this.axis, (e) => {
       this.openTab(this.strips.find((s) => s.info.id === e.strip)?.info.tab ?? this.tab);

@@ -33,3 +33,6 @@ export function element<K extends keyof HTMLElementTagNameMap>(tag: K, attribute
   if (text) node.textContent = text;
   return node;
 }
+
+/** A recording's name without the folders it lies in. */
+export const shortName = (recording: string) => recording.slice(recording.lastIndexOf('/') + 1);

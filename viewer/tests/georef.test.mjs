@@ -14,13 +14,13 @@ const place = (...names) => path.join(folder, ...names);
 const servers = [];
 let browser;
 
-async function view(result) {
-  const server = await serve(result);
+async function view(...words) {
+  const server = await serve(...words);
   servers.push(server);
   return server;
 }
 
-const writeResult = (name, lines) => writeGeorefResult(place(name), { lines });
+const writeResult = (name, lines, more) => writeGeorefResult(place(name), { lines, ...more });
 
 before(async () => {
   browser = await browse();
@@ -93,6 +93,36 @@ test('what a reviewer confirms the next run obeys', async () => {
   const now = JSON.parse(readFileSync(place('second', 'georef.json'), 'utf8')).recordings[0].journeys[0];
   assert.deepEqual(now.paths[0].tracks.map((t) => t.id), before.paths[0].tracks.map((t) => t.id));
   assert.ok(readFileSync(place('second', 'run.json'), 'utf8').includes('first.constraints.toml'));
+});
+
+test('exports hold what is seen, of positions and fixes alike', async () => {
+  const page = await open(browser, await view(writeResult('exports')), { hash: 'from=2&to=10&at=5' });
+  const save = async (label) => {
+    await page.keyboard.press('e');
+    const [download] = await Promise.all([page.waitForEvent('download'), page.click(`dialog button:has-text("${label}")`)]);
+    return readFileSync(await download.path());
+  };
+  const [head, ...rows] = (await save('CSV')).toString().trim().split('\n').map((line) => line.split(','));
+  const row = rows.find((r) => r[0] === '8.000');
+  const at = (name) => row[head.indexOf(name)];
+  assert.deepEqual(['speed', 'sigma_speed', 'across', 'sigma_across'].map((n) => Number(at(n))), [11, 0.25, -0.5, 2]);
+  assert.ok((await save('PNG')).length > 10000);
+  await press(page, 'e');
+  assert.equal(await page.locator('dialog button:has-text("GPX")').count(), 0);
+  assert.deepEqual(page.faults, []);
+});
+
+test('two runs: where the same journey is on other tracks', async () => {
+  const [now, before] = [writeResult('now'), writeResult('before', 3, { swapped: true, title: 'The run before' })];
+  const page = await open(browser, await view(now, '--compare', before));
+  assert.match(await page.textContent('.subtitle'), /^against The run before/);
+  assert.match(await page.textContent('.differences'), /Differs from The run before \(1\).*run\.h5 · 1, 100 to 200 m: B here, C there/s);
+  await page.click('.differences button');
+  await page.waitForFunction(() => Math.abs(parseFloat(document.querySelector('.km').textContent.split(' · ')[1]) - 150) < 10);
+  assert.match(await page.textContent('.track'), /^Track B/);
+  const same = await open(browser, await view(now, writeResult('again')));
+  assert.match(await same.textContent('.differences'), /Same tracks as A made journey/);
+  assert.deepEqual([...page.faults, ...same.faults], []);
 });
 
 test('keyboard and screen reader find everything, contrast holds in every theme', async () => {

@@ -17,6 +17,7 @@ volatile std::sig_atomic_t stopped = 0;
 struct ViewOptions {
   std::vector<std::string> results;
   std::string compare;
+  std::string background;
   int port = 0;
   bool no_browser = false;
 };
@@ -38,7 +39,9 @@ int view(const ViewOptions& options) {
   std::optional<std::filesystem::path> compare;
   if (options.results.size() > 1) compare = options.results[1];
   if (!options.compare.empty()) compare = options.compare;
-  auto content = app::follow_view(options.results.front(), compare);
+  std::optional<std::filesystem::path> background;
+  if (!options.background.empty()) background = options.background;
+  auto content = app::follow_view(options.results.front(), compare, background);
   if (!content) return report(content.error());
   const auto server = app::ViewServer::start(std::move(*content), {.port = options.port, .token = {}});
   if (!server) return report(server.error());
@@ -60,6 +63,8 @@ void add_view(CLI::App& app, int& exit) {
       ->required()
       ->expected(1, 2);
   command->add_option("--compare", options->compare, "The result that is subtracted");
+  command->add_option("--background", options->background,
+                      "Picture of the ground under the plan: GeoTIFF or MBTiles, in any CRS");
   command->add_option("--port", options->port, "Port on 127.0.0.1; 0 takes any free one")->check(CLI::Range(0, 65535));
   command->add_flag("--no-browser", options->no_browser, "Print the address only");
   command->callback([options, &exit] { exit = view(*options); });

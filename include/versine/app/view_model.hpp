@@ -15,8 +15,10 @@ namespace versine::app {
                                               const std::optional<std::filesystem::path>& compare = {});
 
 /// The same, and follows a job that writes this folder: before its first result there is only its progress; when the
-/// result is replaced it is opened anew, and the page learns that from /api/progress.
+/// result is replaced it is opened anew, and the page learns that from /api/progress. `background` is a raster to draw
+/// under the plan (io::BackgroundMap).
 [[nodiscard]] Expected<ViewContent> follow_view(const std::filesystem::path& folder,
-                                                const std::optional<std::filesystem::path>& compare = {});
+                                                const std::optional<std::filesystem::path>& compare = {},
+                                                const std::optional<std::filesystem::path>& background = {});
 
 }  // namespace versine::app

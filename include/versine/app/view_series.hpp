@@ -22,8 +22,9 @@ class ViewSeries {
   [[nodiscard]] const std::vector<double>& x() const { return *x_; }
 
   /// What to draw between two places, one more on each side included: the samples where at most `buckets` lie there (or
-  /// `buckets` is 0), else the finest level with at most that many, the coarsest (100 to 400) if none has. Little-endian: uint32 n, uint32 kind, float64 x[n],
-  /// then float32 arrays of n: kind 0: min, max; 1: min, max, lower, upper; 2: value; 3: value, sigma.
+  /// `buckets` is 0), else the finest level with at most that many, the coarsest (100 to 400) if none has.
+  /// Little-endian: uint32 n, uint32 kind, float64 x[n], then float32 arrays of n: kind 0: min, max; 1: min, max,
+  /// lower, upper; 2: value; 3: value, sigma.
   [[nodiscard]] std::string encode(double from, double to, std::size_t buckets) const;
 
   struct Sample {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <functional>
 #include <map>
 #include <memory>
@@ -14,6 +15,7 @@ namespace versine::app {
 /// What the viewer's page asks for. The server knows nothing of results: it guards the door and passes on.
 struct ViewContent {
   std::function<std::string()> result_json;
+  std::string crs;  ///< of the plan; empty until it is known
   /// Whether a job is writing the result, how far it is, and which generation of the result `result_json` is of.
   std::function<std::string()> progress_json;
   /// Values of every series at one place.
@@ -22,6 +24,9 @@ struct ViewContent {
   std::function<std::optional<std::string>(const std::string& id, double from, double to, std::size_t buckets)> series;
   /// Binary body of /api/map/{part}: the lines and points of a plan; nothing when there is no such part.
   std::function<std::optional<std::string>(const std::string& part)> map;
+  /// PNG of a window (least easting, northing, greatest) of the background in the result's CRS; nothing when there is
+  /// no background, or none there.
+  std::function<std::optional<std::string>(const std::array<double, 4>& window, int width, int height)> background;
   /// report.html of the result, where there is one.
   std::function<std::optional<std::string>()> report;
   /// Takes the reviewer's constraints; the error goes back to the page. Empty: there is nothing to review.

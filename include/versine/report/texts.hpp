@@ -22,7 +22,8 @@ class Texts {
 
   /// "cover.title" and so on. REQUIRES that the key exists.
   [[nodiscard]] const std::string& operator()(std::string_view key) const;
-  /// A sentence that comes from a result file (a convention, a unit, a shape), translated; itself when it has none.
+  /// A sentence that comes from a result file (a convention, a unit, a warning), translated; itself when it has none. In
+  /// the file a sentence with values has {} at their places, in the same order in each language.
   [[nodiscard]] std::string phrase(const std::string& english) const;
   /// Name of a column of track geometry for a person: "alignment_left_d1" is "Alignment left D1".
   [[nodiscard]] std::string quantity(const std::string& column) const;
