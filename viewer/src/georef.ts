@@ -115,7 +115,7 @@ export class GeorefScreen implements Screen {
 
   /** Shows a journey; the axis stays what it was. */
   private async open(journey: Journey, at?: { from: number; to: number }): Promise<void> {
-    if (this.journey !== journey) history.replaceState(null, '', '#');
+    if (this.journey && this.journey !== journey) history.replaceState(null, '', '#'); // a bookmark is of the first
     this.journey = journey;
     this.journeys.value = journey.id;
     this.ofJourney.abort();

@@ -2,12 +2,13 @@
 // The georeferencing screen in a real browser: on a made result with an ambiguous stretch, on a simulated journey that
 // is reviewed and run again, and on a map as large as a country's.
 import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { writeGeorefResult } from './georef_fixture.mjs';
-import { browse, open, requirePage, run, serve, source } from './support.mjs';
+import { browse, open, requirePage, run, serve, source, versine } from './support.mjs';
 
 const folder = mkdtempSync(path.join(os.tmpdir(), 'versine-georef-'));
 const place = (...names) => path.join(folder, ...names);
@@ -137,6 +138,36 @@ test('keyboard and screen reader find everything, contrast holds in every theme'
   }
   assert.match(await page.textContent('#live'), /track of path 1/);
   assert.match(await page.textContent('.failures'), /broken\.h5: no fix lies on the map/);
+});
+
+test('a georeferencing that is half, cut, or of another version is refused with the cure', () => {
+  const spoiled = (name, file, change) => {
+    const result = writeResult(name);
+    const text = change?.(readFileSync(place(name, file), 'utf8'));
+    if (text === undefined) rmSync(place(name, file));
+    else writeFileSync(place(name, file), text);
+    const { status, stderr } = spawnSync(versine, ['view', '--no-browser', result], { encoding: 'utf8', timeout: 20000 });
+    assert.equal(status, 2, `${name}: ${stderr}`);
+    return stderr;
+  };
+  assert.match(spoiled('no-index', 'georef.json'), /georef\.json/);
+  assert.match(spoiled('cut', 'georef.json', (t) => t.slice(0, 400)), /georef\.json[^]*run versine georef again/);
+  assert.match(spoiled('other', 'georef.json', (t) => t.replace('versine-georef 1', 'versine-georef 9')), /versine-georef 9[^]*with the version that wrote it/);
+  assert.match(spoiled('lacking', 'georef.json', (t) => t.replaceAll('"from_m"', '"start_m"')), /from_m/);
+  assert.match(spoiled('no-map', 'network.geojson'), /network\.geojson/);
+  assert.match(spoiled('no-positions', 'positions.csv'), /positions\.csv/);
+  assert.match(spoiled('columns', 'positions.csv', (t) => t.replace('path_distance_m', 'way')), /positions\.csv[^]*path_distance_m[^]*run versine georef again/);
+});
+
+test('positions without values are gaps', async () => {
+  const result = writeResult('gaps');
+  const lines = readFileSync(place('gaps', 'positions.csv'), 'utf8').split('\n');
+  lines[9] = lines[9].replace(/,[\d.]+,[\d.]+,[\d.]+$/, ',nan,0.6,nan'); // 8 s: no speed
+  writeFileSync(place('gaps', 'positions.csv'), lines.join('\n'));
+  const page = await open(browser, await view(result), { hash: 'from=2&to=12&at=8' });
+  assert.equal((await read(page, 'speed')).replace('–', ''), '');
+  await press(page, 'ArrowRight');
+  assert.deepEqual(page.faults, []);
 });
 
 test('a map of 11,906 lines is painted within a second, in levels', async () => {
