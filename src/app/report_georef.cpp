@@ -141,6 +141,7 @@ Expected<void> read_positions(const std::filesystem::path& folder, report::Geore
     report::GeorefJourney& j = r.journeys[it->second];
     const double t = raw->number(i, "time_s");
     j.time.push_back(t - r.table.number(it->second, "from_s"));
+    j.distance.push_back(raw->number(i, "path_distance_m"));
     j.speed.push_back(raw->number(i, "speed_mps") / units::kmh);
     if (speeds) j.sigma_speed.push_back(raw->number(i, "sigma_speed_mps") / units::kmh);
     j.sigma.push_back(raw->number(i, "sigma_m"));

@@ -133,6 +133,16 @@ void add_table(Pages& pages, const GeorefReport& r, const Texts& t) {
   pages.add(failed, y + 6.0);
 }
 
+/// Way on the path at a time of the journey, m; linear between positions.
+double distance_at(const GeorefJourney& j, double time) {
+  const auto it = std::lower_bound(j.time.begin(), j.time.end(), time);
+  if (it == j.time.end()) return j.distance.back();
+  const auto i = static_cast<std::size_t>(it - j.time.begin());
+  if (i == 0) return j.distance.front();
+  const double share = (time - j.time[i - 1]) / (j.time[i] - j.time[i - 1]);
+  return j.distance[i - 1] + share * (j.distance[i] - j.distance[i - 1]);
+}
+
 void add_journeys(Pages& pages, const GeorefReport& r, const Texts& t) {
   bool first = true;
   for (const GeorefJourney& j : r.journeys) {
@@ -156,7 +166,7 @@ void add_journeys(Pages& pages, const GeorefReport& r, const Texts& t) {
     for (Strip& s : strips) fit_scale(s);
     StripAxis axis{.x = j.time, .from = j.time.front(), .to = j.time.back(), .span = j.time.back() - j.time.front()};
     axis.posted = [](double s) { return s; };
-    axis.label = [](double s) { return fmt::format("{:.0f} s", s); };
+    axis.label = [&](double s) { return fmt::format("{:.0f} s \xC2\xB7 {:.2f} km", s, 1e-3 * distance_at(j, s)); };
     draw_strips(d, {box.x, box.bottom() - 53.0, box.width, 53.0}, strips, axis);
   }
 }

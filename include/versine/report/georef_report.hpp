@@ -11,6 +11,7 @@ namespace versine::report {
 struct GeorefJourney {
   int recording = 1, journey = 1;
   std::vector<double> time;                   ///< s since the journey's start
+  std::vector<double> distance;               ///< m on the most probable path, at each time
   std::vector<double> speed, sigma_speed;     ///< km/h; sigma empty when unknown
   std::vector<double> sigma;                  ///< along the track, m
   std::vector<std::vector<Point>> paths;      ///< map metres, the most probable first
