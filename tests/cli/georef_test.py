@@ -39,14 +39,14 @@ def network(tracks):
     return json.dumps({"type": "FeatureCollection", "features": [feature(k, v) for k, v in tracks]})
 
 
-def fixes(start=1000.0, seed=1, side=lambda x: 8.0 * min(max((x - 800) / 100, 0.0), 1.0), east=0.0):
-    """Standing 20 s, 0.5 m/s^2 to 15 m/s, on until 100 s, braking; 2 Hz with 0.4 m."""
+def fixes(start=1000.0, seed=1, side=lambda x: 8.0 * min(max((x - 800) / 100, 0.0), 1.0), east=0.0, sigma=0.4):
+    """Standing 20 s, 0.5 m/s^2 to 15 m/s, on until 100 s, braking; 2 Hz."""
     noise = random.Random(seed)
     x, v = 60.0, 0.0
     for k in range(320):
         t = 0.5 * k
         a = 0.0 if t < 20 else (0.5 if v < 15 and t < 100 else (-0.5 if t >= 100 and v > 0 else 0.0))
-        lat, lon = degrees(x + east + noise.gauss(0, 0.4), side(x) + noise.gauss(0, 0.4))
+        lat, lon = degrees(x + east + noise.gauss(0, sigma), side(x) + noise.gauss(0, sigma))
         yield [start + t, lat, lon, 100.0, 0.5, 0.5, 1.0]
         x, v = x + 0.5 * v + 0.125 * a, max(0.0, v + 0.5 * a)
 
@@ -161,6 +161,23 @@ file = "speed.csv"
         self.georef()
         recording = self.index()["recordings"][0]
         self.assertEqual(len(recording["journeys"]), 2)
+
+    def test_halt_is_a_journey_s_end_only_when_asked_for(self):
+        """A halt of 20 s, then on in the same direction; a reversal always ends a journey."""
+        first = list(fixes(sigma=0.1))
+        shift = first[-1][2] - first[0][2]
+        onward = [[r[0], r[1], r[2] + shift, *r[3:]]
+                  for r in fixes(start=1160.0, seed=5, side=lambda x: 8.0, sigma=0.1)]
+        (self.folder / "network.geojson").write_text(network([("L", straight(0, 6000, 4, 4))]))
+        self.ride("ride.csv", first + onward)
+        self.georef()
+        self.assertEqual(len(self.index()["recordings"][0]["journeys"]), 1)
+        self.georef("--set", "journeys.every_stop=true")
+        self.assertEqual(len(self.index()["recordings"][0]["journeys"]), 2)
+        back = [[1160.0 + 0.5 * k, *r[1:]] for k, r in enumerate(reversed(first))]
+        self.ride("ride.csv", first + back)
+        self.georef()
+        self.assertEqual(len(self.index()["recordings"][0]["journeys"]), 2)
 
     def test_hole_in_the_map_splits_and_says_so(self):
         cut = dict(TRACKS, A1=straight(0, 330, 0, 0), B1=straight(0, 330, 8, 8))
