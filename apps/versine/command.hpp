@@ -36,6 +36,8 @@ void add_compare(CLI::App& app, int& exit);
 void add_gnss(CLI::App& app, int& exit);
 void add_stationing(CLI::App& app, int& exit);
 void add_alignment(CLI::App& app, int& exit);
+/// What `versine alignment FILE` prints, and its exit code.
+[[nodiscard]] int audit_alignment(const std::filesystem::path& file, bool json);
 void add_plan(CLI::App& app, int& exit);
 void add_view(CLI::App& app, int& exit);
 void add_report(CLI::App& app, int& exit);

@@ -92,7 +92,7 @@ Expected<void> write_track_geometry(const GeometryConfig& c, const GeometryResul
     });
   }
   if (r.axis) {
-    writers.emplace_back([&] { return io::write_landxml(folder.path("axis.xml"), {&r.axis->alignment, 1}); });
+    writers.emplace_back([&] { return io::write_landxml(folder.path("axis.xml"), *r.axis); });
     writers.emplace_back([&] { return io::write_axis_csv(folder.path("axis.csv"), *r.axis); });
   }
   if (r.fastenings) {

@@ -106,7 +106,7 @@ Expected<AxisRun> run_axis(const AxisRequest& request) {
   axis->alignment.chainage = design::Chainage::offset((*columns)[1][first]);
   AxisRun out{std::move(*axis), request.output, request.output, {}};
   out.table.replace_extension(".csv");
-  if (auto done = io::write_landxml(out.landxml, {&out.axis.alignment, 1}); !done) return tl::unexpected(done.error());
+  if (auto done = io::write_landxml(out.landxml, out.axis); !done) return tl::unexpected(done.error());
   if (auto done = io::write_axis_csv(out.table, out.axis); !done) return tl::unexpected(done.error());
   out.text = text_of(out.axis);
   return out;

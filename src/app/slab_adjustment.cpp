@@ -45,7 +45,13 @@ Expected<io::FasteningPlans> plan_slab(const FasteningConfig& config, const trac
 std::string slab_json(const io::FasteningPlans& p) {
   nlohmann::ordered_json out{{"fastenings", p.at.size()}};
   const auto add = [&](const char* name, const track::FasteningPlan& plan) {
-    if (!plan.steps.empty()) out[name] = {{"moved", plan.moved}, {"unreachable", plan.unreachable}};
+    if (!plan.steps.empty()) {
+      out[name] = {{"moved", plan.moved},
+                   {"unreachable", plan.unreachable},
+                   {"windows", plan.windows},
+                   {"windows_proven", plan.proven},
+                   {"gap", plan.gap}};
+    }
   };
   add("lateral_left", p.lateral[0]);
   add("lateral_right", p.lateral[1]);
@@ -57,10 +63,16 @@ std::string slab_json(const io::FasteningPlans& p) {
 std::string slab_text(const io::FasteningPlans& p) {
   const std::size_t unmet =
       p.lateral[0].unreachable + p.lateral[1].unreachable + p.vertical[0].unreachable + p.vertical[1].unreachable;
-  return fmt::format("  fastenings: {} of {} moved laterally (left {}, right {}), vertically left {}, right {}{}\n",
-                     p.lateral[0].moved + p.lateral[1].moved, 2 * p.at.size(), p.lateral[0].moved, p.lateral[1].moved,
-                     p.vertical[0].moved, p.vertical[1].moved,
-                     unmet > 0 ? fmt::format("; {} limits cannot be met", unmet) : "");
+  std::size_t windows = 0, proven = 0;
+  for (const auto* plans : {&p.lateral, &p.vertical}) {
+    for (const track::FasteningPlan& plan : *plans) windows += plan.windows, proven += plan.proven;
+  }
+  return fmt::format(
+      "  fastenings: {} of {} moved laterally (left {}, right {}), vertically left {}, right {}; {} of {} "
+      "windows proven best{}\n",
+      p.lateral[0].moved + p.lateral[1].moved, 2 * p.at.size(), p.lateral[0].moved, p.lateral[1].moved,
+      p.vertical[0].moved, p.vertical[1].moved, proven, windows,
+      unmet > 0 ? fmt::format("; {} limits cannot be met", unmet) : "");
 }
 
 }  // namespace versine::app

@@ -11,10 +11,22 @@
 
 namespace versine::io {
 
-Expected<std::vector<design::Imported>> read_alignments(const AlignmentFile& file, const design::AuditLimits& limits) {
-  std::string ending = file.path.extension().string();
+namespace {
+std::string ending_of(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+}  // namespace
+
+bool is_alignment(const std::filesystem::path& path) {
+  const std::string ending = ending_of(path);
+  return ending == ".xml" || ending == ".landxml" || ending == ".tra" || ending == ".gra";
+}
+
+Expected<std::vector<design::Imported>> read_alignments(const AlignmentFile& file, const design::AuditLimits& limits) {
+  const std::string ending = ending_of(file.path);
   if (ending == ".xml" || ending == ".landxml") return read_landxml(file.path, limits);
   if (ending == ".tra") {
     const auto given = [](const std::filesystem::path& p) {
@@ -28,7 +40,8 @@ Expected<std::vector<design::Imported>> read_alignments(const AlignmentFile& fil
                .field = "alignment",
                .found = "the ending '" + ending + "'",
                .expected = ".xml or .landxml (LandXML 1.2), or .tra (DB Verm.esn)",
-               .advice = "export the design as LandXML 1.2"});
+               .advice = ending == ".gra" ? "a GRA holds heights only: name its TRA, and the GRA as gradients"
+                                          : "export the design as LandXML 1.2"});
 }
 
 Expected<design::Alignment> read_alignment(const AlignmentFile& file, const std::string& name,

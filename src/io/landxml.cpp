@@ -39,12 +39,28 @@ const char* type_of(Shape shape) {
   }
 }
 
+/// Standard deviations as properties of a Feature: the schema's place for what other programs skip.
+void add_sigma(pugi::xml_node node, std::initializer_list<std::pair<std::string, double>> values) {
+  pugi::xml_node feature = node.child("Feature");
+  if (!feature) {
+    feature = node.append_child("Feature");
+    feature.append_attribute("code") = "standard deviation";
+    feature.append_attribute("source") = "Versine";
+  }
+  for (const auto& [label, value] : values) {
+    if (!(value > 0.0)) continue;
+    pugi::xml_node property = feature.append_child("Property");
+    property.append_attribute("label") = label.c_str();
+    property.append_attribute("value") = fmt::format("{:.6g}", value).c_str();
+  }
+}
+
 void add_point(pugi::xml_node node, const char* name, double easting, double northing) {
   node.append_child(name).text().set((metres(northing) + " " + metres(easting)).c_str());
 }
 
-void add_element(pugi::xml_node geometry, const design::HorizontalElement& e, const design::AxisPose& start,
-                 const design::AxisPose& end, double station) {
+pugi::xml_node add_element(pugi::xml_node geometry, const design::HorizontalElement& e, const design::AxisPose& start,
+                           const design::AxisPose& end, double station) {
   const bool line = e.shape == Shape::line, arc = e.shape == Shape::arc;
   pugi::xml_node node = geometry.append_child(line ? "Line" : arc ? "Curve" : "Spiral");
   if (!e.name.empty()) node.append_attribute("name") = e.name.c_str();
@@ -72,16 +88,27 @@ void add_element(pugi::xml_node geometry, const design::HorizontalElement& e, co
     add_point(node, "PI", start.easting + t * std::sin(start.heading), start.northing + t * std::cos(start.heading));
   }
   add_point(node, "End", end.easting, end.northing);
+  return node;
 }
 
-Expected<void> add_horizontal(pugi::xml_node node, const design::Alignment& a) {
+/// `sigma`: one per element, or none at all.
+Expected<void> add_horizontal(pugi::xml_node node, const design::Alignment& a,
+                              std::span<const design::ElementSigma> sigma) {
   pugi::xml_node geometry = node.append_child("CoordGeom");
   for (std::size_t i = 0; i < a.horizontal.elements().size(); ++i) {
     const auto& placed = a.horizontal.elements()[i];
     const design::HorizontalElement& e = placed.element;
     const auto pose = [&](double u) { return a.horizontal.at(placed.distance + u, i); };
     if (!(e.curvature_start * e.curvature_end < 0.0)) {
-      add_element(geometry, e, pose(0.0), pose(e.length), placed.distance);
+      pugi::xml_node element = add_element(geometry, e, pose(0.0), pose(e.length), placed.distance);
+      if (i < sigma.size()) {
+        const design::ElementSigma& s = sigma[i];
+        const bool arc = e.shape == Shape::arc;
+        add_sigma(element, {{"start_m", s.joint},
+                            {"length_m", s.length},
+                            {"radius_m", arc ? s.curvature / std::pow(e.curvature_start, 2) : 0.0},
+                            {"cant_m", design::is_transition(e.shape) ? 0.0 : s.cant}});
+      }
       continue;
     }
     if (e.shape != Shape::clothoid) {
@@ -100,7 +127,7 @@ Expected<void> add_horizontal(pugi::xml_node node, const design::Alignment& a) {
   return {};
 }
 
-void add_profile(pugi::xml_node node, const design::Alignment& a) {
+void add_profile(pugi::xml_node node, const design::Alignment& a, std::span<const design::GradientSigma> sigma) {
   if (a.profile.empty()) return;
   pugi::xml_node profile = node.append_child("Profile").append_child("ProfAlign");
   profile.append_attribute("name") = a.name.c_str();
@@ -125,6 +152,12 @@ void add_profile(pugi::xml_node node, const design::Alignment& a) {
       }
     }
     point.text().set((metres(p.distance) + " " + metres(p.height)).c_str());
+  }
+  // A point of the profile has no room for a Feature: the profile has them all.
+  for (std::size_t i = 0; i < sigma.size(); ++i) {
+    add_sigma(profile, {{fmt::format("gradient_{}", i + 1), sigma[i].gradient},
+                        {fmt::format("station_{}_m", i + 1), sigma[i].place},
+                        {fmt::format("curve_{}_m", i + 1), sigma[i].curve}});
   }
 }
 
@@ -162,9 +195,8 @@ void add_chainage(pugi::xml_node node, const design::Alignment& a) {
   }
 }
 
-}  // namespace
-
-Expected<void> write_landxml(const std::filesystem::path& path, std::span<const design::Alignment> alignments) {
+Expected<void> write(const std::filesystem::path& path, std::span<const design::Alignment> alignments,
+                     const design::OptimalAxis* axis) {
   pugi::xml_document doc;
   pugi::xml_node declaration = doc.append_child(pugi::node_declaration);
   declaration.append_attribute("version") = "1.0";
@@ -192,15 +224,28 @@ Expected<void> write_landxml(const std::filesystem::path& path, std::span<const 
     node.append_attribute("name") = a.name.c_str();
     node.append_attribute("length") = metres(a.length()).c_str();
     node.append_attribute("staStart") = metres(0.0).c_str();
-    if (auto good = add_horizontal(node, a); !good) return good;
+    if (auto good = add_horizontal(node, a, axis != nullptr ? axis->sigma : std::vector<design::ElementSigma>());
+        !good) {
+      return good;
+    }
     add_chainage(node, a);
     add_cant(node, a);
-    add_profile(node, a);
+    add_profile(node, a, axis != nullptr ? axis->gradient_sigma : std::vector<design::GradientSigma>());
   }
   if (!doc.save_file(path.c_str(), "  ")) {
     return fail({.file = path.string(), .found = "it can't be written", .expected = "a writable place"});
   }
   return {};
+}
+
+}  // namespace
+
+Expected<void> write_landxml(const std::filesystem::path& path, std::span<const design::Alignment> alignments) {
+  return write(path, alignments, nullptr);
+}
+
+Expected<void> write_landxml(const std::filesystem::path& path, const design::OptimalAxis& axis) {
+  return write(path, {&axis.alignment, 1}, &axis);
 }
 
 }  // namespace versine::io

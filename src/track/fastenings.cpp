@@ -9,6 +9,7 @@
 #include <OsiClpSolverInterface.hpp>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -72,16 +73,19 @@ int no_interruption(CbcModel*, int) {
   return 0;
 }
 
-/// One window: fastenings [first, last); those before `first` have their steps already.
+/// One window: fastenings [first, whole) move in whole steps, those up to `last` in any, so that what comes stays
+/// possible; those before `first` have their steps already.
 class Window {
  public:
-  Window(std::size_t first, std::size_t last, const FasteningOptions& o) : first_(first), last_(last), o_(o) {
-    const auto n = static_cast<int>(last - first);
-    // up, down, moved of each fastening, then slacks.
+  Window(std::size_t first, std::size_t whole, std::size_t last, const FasteningOptions& o)
+      : first_(first), whole_(whole), last_(last), o_(o) {
+    const auto n = static_cast<int>(last - first), m = static_cast<int>(whole - first);
+    // up and down of each fastening, moved of each one in whole steps, then slacks.
     const double up = std::floor(o.highest / o.step + 1e-9), down = std::floor(-o.lowest / o.step + 1e-9);
-    for (int i = 0; i < n; ++i) add_column(0.0, up, 0.01, true);
-    for (int i = 0; i < n; ++i) add_column(0.0, down, 0.01, true);
-    for (int i = 0; i < n; ++i) {
+    // A movement in any steps costs its share of a moved fastening.
+    for (int i = 0; i < n; ++i) add_column(0.0, up, i < m || up == 0.0 ? 0.01 : 0.01 + 1.0 / up, i < m);
+    for (int i = 0; i < n; ++i) add_column(0.0, down, i < m || down == 0.0 ? 0.01 : 0.01 + 1.0 / down, i < m);
+    for (int i = 0; i < m; ++i) {
       add_column(0.0, 1.0, 1.0, true);
       // A row for each direction is tighter than one for both.
       add_row({{i, 1.0}, {2 * n + i, -up}}, -1e30, 0.0);
@@ -119,8 +123,13 @@ class Window {
     add_row(row, -bound - known, bound - known);
   }
 
+  struct Found {
+    std::vector<int> steps;
+    double cost = 0.0, bound = 0.0;  ///< no plan costs less than the bound
+  };
+
   /// Steps of the window's fastenings; nothing when Cbc finds none in its time.
-  [[nodiscard]] std::optional<std::vector<int>> solve() const {
+  [[nodiscard]] std::optional<Found> solve() const {
     OsiClpSolverInterface osi;
     osi.messageHandler()->setLogLevel(0);
     CoinPackedMatrix matrix(false, row_.data(), column_.data(), value_.data(), static_cast<int>(value_.size()));
@@ -140,9 +149,9 @@ class Window {
     CbcMain1(static_cast<int>(std::size(arguments)), arguments, model, no_interruption, data);
     const double* best = model.bestSolution();
     if (best == nullptr) return std::nullopt;
-    std::vector<int> out(count());
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      out[i] = static_cast<int>(std::lround(best[i]) - std::lround(best[i + count()]));
+    Found out{std::vector<int>(whole_ - first_), model.getObjValue(), model.getBestPossibleObjValue()};
+    for (std::size_t i = 0; i < out.steps.size(); ++i) {
+      out.steps[i] = static_cast<int>(std::lround(best[i]) - std::lround(best[i + count()]));
     }
     return out;
   }
@@ -176,12 +185,28 @@ class Window {
     row_high_.push_back(high);
   }
 
-  std::size_t first_, last_;
+  std::size_t first_, whole_, last_;
   const FasteningOptions& o_;
   std::vector<double> lower_, upper_, cost_, value_, row_low_, row_high_;
   std::vector<int> row_, column_;
   std::vector<bool> integer_;
 };
+
+/// Where the search found nothing in its time: what the window before planned, and from there back to no movement as
+/// fast as neighbours may differ. Nothing when a fastening that must not move is in the way.
+std::optional<Window::Found> carried_on(const std::vector<int>& ahead, std::size_t first, std::size_t last,
+                                        std::span<const double> deviation, const FasteningOptions& o) {
+  if (ahead.empty()) return std::nullopt;
+  const int most = static_cast<int>(std::floor(o.neighbour_limit / o.step + 1e-9));
+  Window::Found out{ahead, std::numeric_limits<double>::infinity(), 0.0};
+  out.steps.resize(std::min(out.steps.size(), last - first));
+  while (out.steps.size() < last - first) {
+    const int before = out.steps.back(), now = before > 0 ? std::max(0, before - most) : std::min(0, before + most);
+    if (now != 0 && !std::isfinite(deviation[first + out.steps.size()])) return std::nullopt;
+    out.steps.push_back(now);
+  }
+  return out;
+}
 
 Expected<void> check(std::span<const double> position, const FasteningOptions& o) {
   const bool rising = std::is_sorted(position.begin(), position.end(), std::less_equal<>());
@@ -205,14 +230,18 @@ Expected<FasteningPlan> plan_fastenings(std::span<const double> position, std::s
   out.steps.assign(n, 0);
   out.after.assign(deviation.begin(), deviation.end());
   const std::vector<Limit> limits = limits_of(position, deviation, o, other_after);
+  double open_cost = 0.0, open_bound = 0.0;  // of windows that are not proven
+  double reach = 0.0;                        // how far a movement's consequences go
+  for (const ChordCheck& check : o.checks) reach = std::max(reach, check.length);
+  std::vector<int> ahead;  // what the window before planned for this one
   for (std::size_t first = 0; first < n;) {
     const auto until = [&](double length) {
       return static_cast<std::size_t>(std::upper_bound(position.begin(), position.end(), position[first] + length) -
                                       position.begin());
     };
-    const std::size_t last = until(o.window);
-    const std::size_t kept = last == n ? n : std::max(first + 1, until(0.5 * o.window));
-    Window window(first, last, o);
+    const std::size_t whole = until(o.window), last = until(o.window + reach);
+    const std::size_t kept = whole == n ? n : std::max(first + 1, until(0.5 * o.window));
+    Window window(first, whole, last, o);
     for (std::size_t i = first; i < last; ++i) {
       if (!std::isfinite(deviation[i])) window.forbid(i);
       if (i > 0) window.bend(i - 1, i, out.steps);
@@ -220,16 +249,26 @@ Expected<FasteningPlan> plan_fastenings(std::span<const double> position, std::s
     for (const Limit& limit : limits) {
       if (limit.last() >= first && limit.last() < last) window.keep(limit, deviation, out.steps);
     }
-    const auto steps = window.solve();
-    if (!steps) {
+    auto found = window.solve();
+    if (!found) found = carried_on(ahead, first, whole, deviation, o);
+    if (!found) {
       return fail({.field = "fastenings",
                    .found = fmt::format("no plan from {:.1f} m within {:g} s", position[first], o.seconds),
                    .expected = "a plan for each window",
                    .advice = "allow more seconds, or a shorter window"});
     }
-    for (std::size_t i = first; i < kept; ++i) out.steps[i] = (*steps)[i - first];
+    for (std::size_t i = first; i < kept; ++i) out.steps[i] = found->steps[i - first];
+    ahead.assign(found->steps.begin() + static_cast<std::ptrdiff_t>(kept - first), found->steps.end());
+    ++out.windows;
+    if (found->cost - found->bound < 0.01) {
+      ++out.proven;
+    } else if (std::isfinite(found->cost)) {
+      open_cost += found->cost;
+      open_bound += std::max(0.0, found->bound);
+    }
     first = kept;
   }
+  if (open_cost > 0.0) out.gap = 1.0 - open_bound / open_cost;
   for (std::size_t i = 0; i < n; ++i) {
     out.after[i] += o.step * out.steps[i];
     out.moved += out.steps[i] != 0;

@@ -8,6 +8,9 @@
 #include <limits>
 #include <map>
 
+#include "versine/track/butterworth.hpp"
+#include "versine/track/versine.hpp"
+
 namespace versine::track {
 namespace {
 
@@ -86,6 +89,33 @@ double deviation(const std::vector<double>& x, std::size_t a, std::size_t b) {
   return n < 0.5 * double(b - a) || n < 2 ? nan : std::sqrt(m2 / (n - 1));
 }
 
+using Series = std::map<std::string, std::vector<double>>;
+
+/// Cross level and twist as statistics take them: without cant and its ramps, which are no irregularity. Less the
+/// design's cant; where there is none, freed of wavelengths beyond 70 m.
+Series without_cant(const Geometry& g) {
+  constexpr double longest = 70.0;
+  const Column *cross_level = g.find("cross_level"), *deviation = g.find("cross_level_deviation");
+  if (cross_level == nullptr || !(g.step > 0.0)) return {};
+  Series out;
+  std::vector<double>& x = out["cross_level"];
+  x = deviation != nullptr ? deviation->value : cross_level->value;
+  if (deviation == nullptr) {
+    const auto cant =
+        filter_both_ways(low_pass(longest, g.step, 4), x, static_cast<std::size_t>(3.0 * longest / g.step));
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] -= cant[i];
+  }
+  for (const Column& c : g.columns) {
+    if (!c.name.starts_with("twist_")) continue;
+    const double base = std::strtod(c.name.c_str() + 6, nullptr);
+    if (!(base > 0.0)) continue;
+    std::vector<double>& twist = out[c.name];
+    for (std::size_t i = 0; i < x.size(); ++i)
+      twist.push_back((x[i] - grid_value(x, double(i) - base / g.step)) / base);
+  }
+  return out;
+}
+
 double sigma_of(const Section& s, const std::string& column) {
   for (const auto& [name, sigma] : s.sigma) {
     if (name == column) return sigma;
@@ -100,18 +130,18 @@ double combined(const Section& s, const std::vector<double>& w) {
     return 0.5 * (sigma_of(s, std::string(what) + "_left_d1") + sigma_of(s, std::string(what) + "_right_d1"));
   };
   const double al = mean("alignment"), ll = mean("level");
-  const double g = sigma_of(s, "gauge"), cl = sigma_of(s, "cross_level_deviation");
-  return std::sqrt(w[0] * al * al + w[1] * g * g +
-                   w[2] * (std::isfinite(cl) ? cl * cl : std::pow(sigma_of(s, "cross_level"), 2)) + w[3] * ll * ll);
+  const double g = sigma_of(s, "gauge"), cl = sigma_of(s, "cross_level");
+  return std::sqrt(w[0] * al * al + w[1] * g * g + w[2] * cl * cl + w[3] * ll * ll);
 }
 
-Section section_of(const Geometry& g, const LimitProfile& profile, const SpeedClass& speed, std::size_t a,
-                   std::size_t b) {
+Section section_of(const Geometry& g, const Series& no_cant, const LimitProfile& profile, const SpeedClass& speed,
+                   std::size_t a, std::size_t b) {
   Section s{.start = g.mileage[a], .end = g.mileage[b - 1]};
   for (const Column& c : g.columns) {
     const bool wanted = c.name.starts_with("alignment_") || c.name.starts_with("level_") || c.name == "gauge" ||
                         c.name.starts_with("cross_level") || c.name.starts_with("twist_");
-    if (wanted) s.sigma.emplace_back(c.name, deviation(c.value, a, b));
+    const auto free = no_cant.find(c.name);
+    if (wanted) s.sigma.emplace_back(c.name, deviation(free != no_cant.end() ? free->second : c.value, a, b));
   }
   s.tqi = profile.tqi_columns.empty() ? nan : 0.0;
   for (const std::string& name : profile.tqi_columns) {
@@ -182,13 +212,14 @@ Expected<Quality> assess(const Geometry& g, const LimitProfile& profile, double 
   }
   std::sort(out.exceedances.begin(), out.exceedances.end(),
             [](const Exceedance& a, const Exceedance& b) { return a.peak < b.peak; });
+  const Series no_cant = without_cant(g);
   for (std::size_t a = 0; a < g.size();) {
     // Sections begin at multiples of their length, so that those of several runs are the same.
     const double end = (std::floor(g.mileage[a] / profile.section + 1e-9) + 1.0) * profile.section;
     std::size_t b = a;
     while (b < g.size() && g.mileage[b] < end - 1e-9) ++b;
     if (g.mileage[b - 1] - g.mileage[a] > 0.5 * profile.section)
-      out.sections.push_back(section_of(g, profile, *it, a, b));
+      out.sections.push_back(section_of(g, no_cant, profile, *it, a, b));
     a = b;
   }
   return out;

@@ -57,6 +57,40 @@ design::Alignment sample() {
   return a;
 }
 
+TEST(LandXml, SigmasOfAMeasuredAxisAreInItAndDisturbNoReader) {
+  design::OptimalAxis axis;
+  axis.alignment = sample();
+  const auto count = axis.alignment.horizontal.elements().size();
+  axis.sigma.assign(count, {.joint = 0.013, .length = 0.027, .curvature = 1e-8, .cant = 1e-4});
+  axis.gradient_sigma = {{1e-6, 0.0, 0.0}, {2e-6, 0.31, 1.5}, {3e-6, 0.42, 2.5}};
+  const auto with = temporary("sigma.xml"), without = temporary("plain.xml");
+  ASSERT_TRUE(write_landxml(with, axis));
+  ASSERT_TRUE(write_landxml(without, std::vector{axis.alignment}));
+  std::ifstream file(with);
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  const auto a = read_landxml(with), b = read_landxml(without);
+  std::filesystem::remove(with);
+  std::filesystem::remove(without);
+  ASSERT_TRUE(a && b);
+  ASSERT_TRUE(a->front().alignment);
+  EXPECT_EQ(a->front().audit.size(), b->front().audit.size());
+  EXPECT_DOUBLE_EQ(a->front().alignment->length(), b->front().alignment->length());
+  const auto found = [&](const std::string& label, const std::string& value) {
+    const std::string property = "<Property label=\"" + label + "\" value=\"" + value + "\" />";
+    std::size_t n = 0;
+    for (auto at = text.find(property); at != std::string::npos; at = text.find(property, at + 1)) ++n;
+    return n;
+  };
+  EXPECT_EQ(found("start_m", "0.013"), count);
+  EXPECT_EQ(found("length_m", "0.027"), count);
+  EXPECT_EQ(found("radius_m", "0.0081"), 5u);  // 1e-8 times 900 m squared
+  EXPECT_EQ(found("radius_m", "0.0049"), 2u);
+  EXPECT_EQ(found("cant_m", "0.0001"), 14u);  // lines and arcs
+  EXPECT_EQ(found("gradient_2", "2e-06"), 1u);
+  EXPECT_EQ(found("station_3_m", "0.42"), 1u);
+  EXPECT_EQ(found("station_1_m", "0"), 0u);  // the start of the profile is not estimated
+}
+
 TEST(LandXml, RoundTripKeepsEveryValueWithinAMicrometre) {
   const design::Alignment a = sample();
   const auto path = temporary("round.xml");

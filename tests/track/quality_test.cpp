@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -79,6 +80,37 @@ TEST(Quality, SectionsHaveSigmaTqiAndClass) {
   EXPECT_NEAR(q.sections[1].tqi, 0.003 / std::sqrt(2.0), 4e-6);
   EXPECT_EQ(q.sections[0].classes[0].second, "B");
   EXPECT_EQ(q.sections[0].over, (std::vector<std::string>{"AL of alignment_left_d1", "TQI"}));
+}
+
+TEST(Quality, CantAndItsRampAreNoIrregularity) {
+  // 100 mm of cant built up over 100 m within a section, and irregularities of 1 mm: only these count.
+  const std::size_t n = 3201;
+  Geometry design = grid(n), bare = grid(n);
+  std::vector<double> cant(n), irregular(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const double s = design.mileage[i];
+    cant[i] = 0.1 * std::clamp((s - 250.0) / 100.0, 0.0, 1.0);
+    irregular[i] = 0.001 * std::sin(2 * std::numbers::pi * s / 10.0);
+  }
+  for (Geometry* g : {&design, &bare}) {
+    for (const char* name : {"cross_level", "twist_3m"}) g->add(name, "mm", 1e-3, "");
+    for (std::size_t i = 0; i < n; ++i) {
+      g->columns[0].value[i] = cant[i] + irregular[i];
+      g->columns[1].value[i] =
+          i < 12 ? std::nan("") : (cant[i] + irregular[i] - cant[i - 12] - irregular[i - 12]) / 3.0;
+    }
+  }
+  design.add("cross_level_deviation", "mm", 1e-3, "").value = irregular;
+  LimitProfile p = profile();
+  p.tqi_columns = {"cross_level", "twist_3m*3"};
+  // Twist of a sine over 3 m of a wavelength of 10 m: 2 sin(pi 3 / 10) times its amplitude.
+  const double wave = 0.001 / std::sqrt(2.0), want = wave * (1.0 + 2.0 * std::sin(0.3 * std::numbers::pi));
+  const Quality with_design = *assess(design, p, 40.0), without = *assess(bare, p, 40.0);
+  ASSERT_EQ(with_design.sections.size(), 4u);
+  for (const Section& s : with_design.sections) EXPECT_NEAR(s.tqi, want, 0.01 * want);
+  EXPECT_NEAR(without.sections[3].tqi, want, 0.02 * want);
+  // The ramp itself would add 34 mm; what the filter leaves of its two kinks is below 4 mm.
+  EXPECT_LT(without.sections[1].tqi, want + 0.004);
 }
 
 }  // namespace

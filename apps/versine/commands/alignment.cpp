@@ -87,6 +87,13 @@ int run(const Options& options) {
 
 }  // namespace
 
+int audit_alignment(const std::filesystem::path& file, bool json) {
+  Options options;
+  options.file.path = file;
+  options.json = json;
+  return run(options);
+}
+
 void add_alignment(CLI::App& app, int& exit) {
   CLI::App* command = app.add_subcommand("alignment", "Audit a design alignment (LandXML, DB TRA/GRA), or convert it");
   auto options = std::make_shared<Options>();

@@ -4,6 +4,7 @@
 
 #include "command.hpp"
 #include "versine/app/recording_info.hpp"
+#include "versine/io/alignment_file.hpp"
 
 namespace versine::cli {
 
@@ -14,7 +15,9 @@ void add_info(CLI::App& app, int& exit) {
   };
   const auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("info", "What is in a recording: format, columns, rate, gaps, units guessed");
-  command->add_option("file", options->files, "CSV, RTKLIB .pos, NMEA or trajectory.h5; plain, gzip or zstd")
+  command
+      ->add_option("file", options->files,
+                   "CSV, RTKLIB .pos, NMEA or trajectory.h5; plain, gzip or zstd; LandXML or DB TRA")
       ->required();
   command->add_flag("--json", options->json, "Print JSON");
   command->footer(
@@ -22,6 +25,10 @@ void add_info(CLI::App& app, int& exit) {
       "them, with their unit.");
   command->callback([options, &exit] {
     for (const std::string& file : options->files) {
+      if (io::is_alignment(file)) {
+        exit = audit_alignment(file, options->json);
+        continue;
+      }
       const auto info = app::recording_info(file);
       if (!info) {
         exit = report(info.error());

@@ -15,6 +15,9 @@ struct AlignmentFile {
   std::filesystem::path stationing;  ///< TRA of the stationing line that the GRA's mileages refer to; may be empty
 };
 
+/// By its ending: a design in a format that is known here (a GRA, too, which is read with its TRA).
+[[nodiscard]] bool is_alignment(const std::filesystem::path& path);
+
 /// All alignments of a file, audited.
 [[nodiscard]] Expected<std::vector<design::Imported>> read_alignments(const AlignmentFile& file,
                                                                       const design::AuditLimits& limits = {});

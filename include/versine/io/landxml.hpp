@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "versine/design/assemble.hpp"
+#include "versine/design/optimal_axis.hpp"
 
 namespace versine::io {
 
@@ -20,5 +21,11 @@ namespace versine::io {
 /// written, or on a transition from right to left in one element, which LandXML has no words for (a clothoid is split).
 [[nodiscard]] Expected<void> write_landxml(const std::filesystem::path& path,
                                            std::span<const design::Alignment> alignments);
+
+/// A measured axis, with the standard deviations of its elements as `<Feature code="standard deviation">` with a
+/// `<Property label value>` for each: start_m, length_m, radius_m, cant_m of an element; gradient_N (1), station_N_m,
+/// curve_N_m of the profile's N-th gradient and of the point that it begins at. Programs that do not know them skip
+/// them.
+[[nodiscard]] Expected<void> write_landxml(const std::filesystem::path& path, const design::OptimalAxis& axis);
 
 }  // namespace versine::io

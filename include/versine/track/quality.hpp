@@ -26,10 +26,12 @@ struct Exceedance {
 
 /// Statistics of one section of 200 m.
 struct Section {
-  double start = 0.0, end = 0.0;                      ///< continuous mileage, m
-  std::vector<std::pair<std::string, double>> sigma;  ///< by column, SI
-  double tqi = 0.0;                                   ///< sum of sigmas, m; NaN when a part is missing
-  double cosd = 0.0;                                  ///< combined standard deviation, m; NaN when a part is missing
+  double start = 0.0, end = 0.0;  ///< continuous mileage, m
+  /// By column, SI. Cross level and twist without cant and its ramps: less the design's, or where there is none freed
+  /// of wavelengths beyond 70 m.
+  std::vector<std::pair<std::string, double>> sigma;
+  double tqi = 0.0;   ///< sum of sigmas, m; NaN when a part is missing
+  double cosd = 0.0;  ///< combined standard deviation, m; NaN when a part is missing
   std::vector<std::pair<std::string, std::string>> classes;  ///< by column
   std::vector<std::string> over;  ///< "level of column" for section limits and TQI that are exceeded
 };
