@@ -9,7 +9,7 @@ VERSINE_DATA ?= ../shared/data
 override VERSINE_DATA := $(abspath $(VERSINE_DATA))
 export VERSINE_DATA
 
-.PHONY: all setup build test demo screenshots report-images accuracy figures benchmarks format clean accuracy-positioning accuracy-georef accuracy-track
+.PHONY: all setup build test sanitize demo screenshots report-images accuracy figures benchmarks format clean accuracy-positioning accuracy-georef accuracy-track
 all: build
 
 setup:
@@ -23,6 +23,10 @@ build: setup $(BUILD)/build.ninja
 
 test: build
 	ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+
+# Text readers and integrity checks under the address and undefined-behaviour sanitizers.
+sanitize: setup
+	JOBS=$(JOBS) scripts/sanitize
 
 # Limits of the demo's survey and of the 10 km line.
 LIMITS := --set geometry.quality.limits=$(CURDIR)/data/limits
