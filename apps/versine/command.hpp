@@ -53,8 +53,9 @@ struct JobOptions {
 };
 void add_job_options(CLI::App& command, JobOptions& options);
 
-/// Prints an error on standard error and returns the exit code for bad input.
-int report(const Error& error);
+/// Prints an error on standard error and returns the exit code for bad input. What is wrong with a key of `job` names
+/// that file.
+int report(Error error, const std::string& job = {});
 
 /// Prints what a job came to, as text with the place of its result or as JSON, and returns the exit code.
 int print_result(const JobOptions& options, const std::string& text, const std::string& json,

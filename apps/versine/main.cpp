@@ -19,7 +19,8 @@ void add_job_options(CLI::App& command, JobOptions& options) {
       ->take_all();
 }
 
-int report(const Error& error) {
+int report(Error error, const std::string& job) {
+  if (error.file.empty() && !error.field.empty()) error.file = job;
   std::fprintf(stderr, "versine: %s\n", error.message().c_str());
   return bad_input;
 }

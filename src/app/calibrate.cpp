@@ -91,13 +91,16 @@ void describe(ConfigVisitor& v, CalibrateConfig& c) {
   });
 }
 
+Expected<void> check_passes(const CalibrateConfig& config) {
+  if (config.passes.size() >= 2) return {};
+  return fail({.field = "pass",
+               .found = fmt::format("{} passes", config.passes.size()),
+               .expected = "two or more",
+               .advice = "add [[pass]] for each run over the common stretch"});
+}
+
 Expected<Calibration> compute_calibration(const CalibrateConfig& config, Progress& progress) {
-  if (config.passes.size() < 2) {
-    return fail({.field = "pass",
-                 .found = fmt::format("{} passes", config.passes.size()),
-                 .expected = "two or more",
-                 .advice = "add [[pass]] for each run over the common stretch"});
-  }
+  if (auto good = check_passes(config); !good) return tl::unexpected(good.error());
   auto files = read_geometry_files(config.geometry);
   if (!files) return tl::unexpected(files.error());
   std::vector<track::AttitudeLine> lines;

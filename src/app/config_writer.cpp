@@ -141,8 +141,8 @@ class TemplateWriter final : public TextVisitor {
  public:
   explicit TemplateWriter(std::string path) : path_(std::move(path)) {}
   void table(std::string_view key, std::string_view doc, const std::function<void(ConfigVisitor&)>& body,
-             bool*) override {
-    sub(key, fmt::format("[{}{}]", path_, key), doc, body);
+             bool* present) override {
+    sub(key, fmt::format("[{}{}]", path_, key), doc, body, present != nullptr);
   }
   [[nodiscard]] std::string str() const { return rows_ + subs_; }
   [[nodiscard]] bool has_required() const { return required_; }
@@ -169,24 +169,13 @@ class TemplateWriter final : public TextVisitor {
 
  private:
   void sub(std::string_view key, const std::string& title, std::string_view doc,
-           const std::function<void(ConfigVisitor&)>& body, bool list = false) {
+           const std::function<void(ConfigVisitor&)>& body, bool optional) {
     TemplateWriter writer(path_ + std::string(key) + ".");
     body(writer);
     std::string text = fmt::format("\n# {}\n{}\n{}", doc, title, writer.str());
-    // A table that nobody needs but that has required keys would make the template invalid: it is commented out whole.
-    if (list || (writer.has_required() && !path_.empty())) text = commented(text);
+    // A table that switches something on, and one that nobody needs but that has required keys: commented out whole.
+    if (optional || (writer.has_required() && !path_.empty())) text = commented_out(text);
     subs_ += text;
-  }
-  static std::string commented(const std::string& text) {
-    std::string out;
-    std::size_t from = 0;
-    while (from < text.size()) {
-      const std::size_t to = std::min(text.find('\n', from), text.size());
-      const std::string line = text.substr(from, to - from);
-      out += (line.empty() || line.front() == '#' ? line : "# " + line) + "\n";
-      from = to + 1;
-    }
-    return out;
   }
   std::string path_, rows_, subs_;
   bool required_ = false;
@@ -216,6 +205,18 @@ class JsonWriter final : public TextVisitor {
 };
 
 }  // namespace
+
+std::string commented_out(const std::string& text) {
+  std::string out;
+  std::size_t from = 0;
+  while (from < text.size()) {
+    const std::size_t to = std::min(text.find('\n', from), text.size());
+    const std::string line = text.substr(from, to - from);
+    out += (line.empty() || line.front() == '#' ? line : "# " + line) + "\n";
+    from = to + 1;
+  }
+  return out;
+}
 
 std::string config_documentation(const Description& description) {
   DocumentationWriter writer("");

@@ -47,6 +47,7 @@ Expected<std::vector<std::string>> check_calibrate(const std::filesystem::path& 
       !done) {
     return tl::unexpected(done.error());
   }
+  if (auto good = check_passes(config); !good) return tl::unexpected(good.error());
   std::vector<std::string> out;
   for (const auto& pass : config.passes) {
     const auto trajectory = io::read_trajectory(pass.trajectory.description);

@@ -64,16 +64,19 @@ Expected<const JobKind*> job_kind_of(const std::filesystem::path& job) {
 }
 
 std::string job_template(const JobKind& kind) {
+  const std::string head = fmt::format(
+      "# {}\n# Keys that are commented out show their default. Every key: 'versine init {} --keys' or docs/job-{}.md.\n"
+      "# Paths are relative to this file; ${{VERSINE_DATA}} stands for the folder that the variable of that name "
+      "holds.\n\n",
+      kind.purpose, kind.name, kind.name);
   std::string keys = config_template(kind.describe);
+  if (!kind.starter.empty()) {
+    return fmt::format("{}{}\n# Everything else that can be said:\n\n{}", head, kind.starter, commented_out(keys));
+  }
   // The kind is a default in its own command, but 'check' and people need to read it.
   const std::string hidden = fmt::format("# job = \"{}\"", kind.name);
   if (const auto at = keys.find(hidden); at != std::string::npos) keys.erase(at, 2);
-  return fmt::format(
-      "# {}\n# Keys that are commented out show their default. Every key: 'versine init {} --keys' or docs/job-{}.md.\n"
-      "# Paths are relative to this file; ${{VERSINE_DATA}} stands for the folder that the variable of that name "
-      "holds.\n\n"
-      "{}",
-      kind.purpose, kind.name, kind.name, keys);
+  return head + keys;
 }
 
 std::string job_documentation(const JobKind& kind) {

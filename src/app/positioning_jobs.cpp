@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "gnss_files.hpp"
 #include "network_report.hpp"
 #include "versine/app/gnss.hpp"
 #include "versine/app/job_run.hpp"
@@ -215,16 +216,16 @@ void describe_defaults(ConfigVisitor& v) {
 Expected<std::vector<std::string>> check_gnss(const fs::path& path, std::span<const std::string> overrides) {
   const auto job = read_job<GnssJob>(path, overrides);
   if (!job) return tl::unexpected(job.error());
-  std::vector<std::string> lines;
-  for (const auto& [role, files] :
-       {std::pair{"rover", &job->gnss.rover}, {"base", &job->gnss.base}, {"navigation", &job->gnss.navigation}}) {
-    for (const InputPath& f : *files) {
-      const auto input = io::describe_input(role, f.written, f.path);
-      if (!input) return tl::unexpected(input.error());
-      lines.push_back(fmt::format("{}: {}, {} bytes", role, f.written, input->bytes));
-    }
-  }
-  return lines;
+  const gnss_files::Workspace workspace;
+  SilentProgress progress;
+  const auto files = gnss_files::prepare(job->gnss, workspace, progress);
+  if (!files) return tl::unexpected(files.error());
+  if (auto good = gnss_files::check(job->gnss, *files); !good) return tl::unexpected(good.error());
+  const auto span = gnss_files::span_of(files->rover);
+  return std::vector{
+      fmt::format("{} files of the rover, {} of the base, {} of navigation data", files->rover.size(),
+                  files->base.size(), files->navigation.size()),
+      fmt::format("rover: {} to {}", to_text(span.first, TimeScale::gps), to_text(span.last, TimeScale::gps))};
 }
 Expected<std::vector<std::string>> check_stationing(const fs::path& path, std::span<const std::string> overrides) {
   const auto job = read_job<StationingJob>(path, overrides);

@@ -53,7 +53,6 @@ Expected<void> write_run(const std::filesystem::path& folder, const SimulateConf
   return write_text(folder / "georef.toml", georef_job_for(config.journey));
 }
 
-/// Rails, motion and error-free IMU of the scenario, on its alignment or its network.
 Expected<std::shared_ptr<const simulation::World>> world_of(const SimulateConfig& c, const JourneyNetwork* map) {
   if (map == nullptr) return simulation::prepare(c.scenario);
   simulation::JourneyScenario journey{.name = c.title,
@@ -97,6 +96,19 @@ Expected<void> write_record(io::Run run, const io::ResultFolder& folder, const s
 }
 }  // namespace
 
+Expected<SimulatedWorld> prepare_world(const SimulateConfig& config) {
+  SimulatedWorld out;
+  if (config.journey.present) {
+    auto loaded = load_network(config.journey);
+    if (!loaded) return tl::unexpected(std::move(loaded.error()));
+    out.map = std::move(*loaded);
+  }
+  auto world = world_of(config, out.map ? &*out.map : nullptr);
+  if (!world) return tl::unexpected(std::move(world.error()));
+  out.world = std::move(*world);
+  return out;
+}
+
 Expected<SimulateRun> run_simulate(const std::filesystem::path& job, std::span<const std::string> overrides,
                                    const std::filesystem::path& output, int runs, int threads, Progress& progress) {
   namespace fs = std::filesystem;
@@ -108,29 +120,21 @@ Expected<SimulateRun> run_simulate(const std::filesystem::path& job, std::span<c
   if (!folder) return tl::unexpected(std::move(folder.error()));
   progress.report("track and motion", 0.0);
   io::Run begun = begin_run("simulate");
-  std::optional<JourneyNetwork> map;
-  if (config->journey.present) {
-    auto loaded = load_network(config->journey);
-    if (!loaded) return tl::unexpected(std::move(loaded.error()));
-    map = std::move(*loaded);
-  }
-  auto world = world_of(*config, map ? &*map : nullptr);
-  if (!world) {
-    if (world.error().file.empty()) world.error().file = job.string();
-    return tl::unexpected(std::move(world.error()));
-  }
+  auto prepared = prepare_world(*config);
+  if (!prepared) return tl::unexpected(std::move(prepared.error()));
+  const auto& [world, map] = *prepared;
   Expected<void> done;
   json summary;
   const bool several = config->runs > 1;
   simulation::simulate_runs(
-      **world, static_cast<std::uint64_t>(config->seed), static_cast<std::uint64_t>(config->runs), threads,
-      [&](std::uint64_t run, simulation::SimulatedRecording&& recording) {
+      *world, static_cast<std::uint64_t>(config->seed), static_cast<std::uint64_t>(config->runs), threads,
+      [&, &world = world, &map = map](std::uint64_t run, simulation::SimulatedRecording&& recording) {
         if (!done) return;
         const fs::path where = several ? folder->path(fmt::format("run_{:04d}", run)) : folder->folder();
         done = write_run(where, *config, recording, config->write_csv_truth && run == 0);
         // Beside each recording, since its job names it so.
         if (done && map && map->source) done = io::write_network_geojson(where / "network.geojson", *map->source);
-        if (run == 0) summary = summary_of(**world, recording);
+        if (run == 0) summary = summary_of(*world, recording);
       },
       progress);
   if (done && progress.cancelled()) done = fail({.found = "cancelled"});
@@ -145,7 +149,7 @@ Expected<SimulateRun> run_simulate(const std::filesystem::path& job, std::span<c
   return SimulateRun{
       folder->target(), summary.dump(2),
       fmt::format("{:.1f} s of recording over {:.1f} m with {} standstills, {} run{}\nnext: versine {} {}\n",
-                  summary["duration_s"].get<double>(), summary["distance_m"].get<double>(), (*world)->stops.size(),
+                  summary["duration_s"].get<double>(), summary["distance_m"].get<double>(), world->stops.size(),
                   config->runs, several ? "s" : "", map ? "georef" : "survey",
                   (folder->target() / (several ? "run_0000" : "") / (map ? "georef.toml" : "survey.toml")).string())};
 }

@@ -12,6 +12,8 @@
 #include <system_error>
 #include <vector>
 
+#include "versine/io/open_error.hpp"
+
 namespace versine::io {
 
 /// Fills a span with the next bytes; 0 at the end, a text that says what is wrong instead.
@@ -159,14 +161,7 @@ Expected<InputStream> InputStream::open(const std::filesystem::path& path) {
     return fail({.file = path.string(), .found = "a folder", .expected = "a file", .advice = "name a file in it"});
   }
   std::FILE* const opened = std::fopen(path.string().c_str(), "rb");
-  if (opened == nullptr) {
-    const bool missing = errno == ENOENT;
-    return fail({.file = path.string(),
-                 .found = missing ? "no such file" : std::string("that it cannot be read: ") + std::strerror(errno),
-                 .expected = "a readable file",
-                 .advice = missing ? "check the path; relative paths in a job count from the job file"
-                                   : "check the file's permissions"});
-  }
+  if (opened == nullptr) return tl::unexpected(open_error(path));
   auto file = std::make_unique<PlainFile>(opened);
   const std::string head = file->peek(4);
   if (head.empty()) {

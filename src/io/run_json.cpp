@@ -9,6 +9,7 @@
 
 #include "text_output.hpp"
 #include "versine/core/calendar.hpp"
+#include "versine/io/open_error.hpp"
 #include "versine/io/sha256.hpp"
 
 namespace versine::io {
@@ -68,13 +69,7 @@ Json record_json(const RunRecord& record, TimeScale scale) {
 
 Expected<RunInput> describe_input(std::string role, std::string written, const std::filesystem::path& path) {
   const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.string().c_str(), "rb"));
-  const auto unreadable = [&] {
-    return fail({.file = path.string(),
-                 .found = "that it cannot be read",
-                 .expected = "a readable file",
-                 .advice = "check the path and its permissions"});
-  };
-  if (!file) return unreadable();
+  if (!file) return tl::unexpected(open_error(path));
   Sha256 hash;
   RunInput input{.role = std::move(role), .written = std::move(written), .path = path};
   std::vector<char> block(std::size_t{1} << 20);
@@ -82,7 +77,7 @@ Expected<RunInput> describe_input(std::string role, std::string written, const s
     hash.add(block.data(), n);
     input.bytes += n;
   }
-  if (std::ferror(file.get()) != 0) return unreadable();
+  if (std::ferror(file.get()) != 0) return tl::unexpected(open_error(path));
   input.sha256 = hash.hex();
   return input;
 }

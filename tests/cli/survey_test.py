@@ -208,6 +208,18 @@ class Documentation(Case):
         done = self.versine("check", "new.toml")
         self.assertIn("recording.csv", done.stderr)  # everything is right but the file that is not there
 
+    def test_no_template_is_called_good_that_cannot_run(self):
+        for kind in ("survey", "geometry", "calibrate", "gnss", "stationing", "georef"):
+            (self.folder / f"{kind}.toml").write_text(self.good("init", kind))
+            checked, run = self.versine("check", f"{kind}.toml"), self.versine(kind, f"{kind}.toml")
+            self.assertEqual((checked.returncode, run.returncode), (2, 2), kind)
+            self.assertEqual(checked.stderr, run.stderr)  # what would be found later is found by 'check'
+
+    def test_template_of_a_simulation_runs_and_its_job_too(self):
+        (self.folder / "line.toml").write_text(self.good("init", "simulate"))
+        self.assertIn("390", self.good("simulate", "line.toml"))
+        self.good("check", "line.recording/survey.toml")
+
     def test_help_teaches(self):
         text = self.good("--help")
         for word in ("survey", "init", "check", "info"):

@@ -14,7 +14,7 @@ int calibrate(const JobOptions& options) {
     TerminalProgress progress(options.quiet || options.json);
     run = app::run_calibrate(options.job, options.set, options.output, progress);
   }
-  if (!run) return report(run.error());
+  if (!run) return report(run.error(), options.job);
   return print_result(options, run->summary_text, run->summary_json, run->folder, run->acceptable);
 }
 }  // namespace

@@ -29,7 +29,7 @@ int check(const Options& options) {
     std::printf("%s\n", out.dump(2).c_str());
     return lines ? good : bad_input;
   }
-  if (!lines) return report(lines.error());
+  if (!lines) return report(lines.error(), options.job);
   for (const std::string& line : *lines) std::printf("%s\n", line.c_str());
   std::printf("%s is a good %s job; run it with: versine %s %s\n", options.job.c_str(),
               std::string((*kind)->name).c_str(), std::string((*kind)->name).c_str(), options.job.c_str());

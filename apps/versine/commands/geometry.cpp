@@ -15,7 +15,7 @@ int geometry(const JobOptions& options) {
     TerminalProgress progress(options.quiet || options.json);
     run = app::run_geometry(options.job, options.set, options.output, progress);
   }
-  if (!run) return report(run.error());
+  if (!run) return report(run.error(), options.job);
   return print_result(options, run->summary_text, run->summary_json, run->folder, run->acceptable);
 }
 }  // namespace

@@ -16,7 +16,7 @@ int run(const JobOptions& options, bool online) {
     TerminalProgress progress(options.quiet || options.json);
     done = app::run_georef(options.job, options.set, options.output, options.threads, online, progress);
   }
-  if (!done) return report(done.error());
+  if (!done) return report(done.error(), options.job);
   for (const auto& f : done->faults) report(f);
   return print_result(options, done->summary_text, done->summary_json, done->folder, done->faults.empty());
 }

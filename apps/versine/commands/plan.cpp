@@ -15,7 +15,7 @@ int plan(const JobOptions& options, int monte_carlo) {
     TerminalProgress progress(options.quiet || options.json);
     run = app::run_plan(options.job, options.set, options.output, monte_carlo, options.threads, progress);
   }
-  if (!run) return report(run.error());
+  if (!run) return report(run.error(), options.job);
   return print_result(options, run->summary_text, run->summary_json, run->folder, run->met);
 }
 }  // namespace

@@ -17,7 +17,7 @@ int run(Job& job, const JobOptions& options) {
     TerminalProgress progress(options.quiet || options.json);
     done = job(options.job, options.set, options.output, progress, log);
   }
-  if (!done) return report(done.error());
+  if (!done) return report(done.error(), options.job);
   return print_result(options, done->summary_text, done->summary_json, done->folder);
 }
 

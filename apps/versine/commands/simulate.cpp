@@ -16,7 +16,7 @@ int simulate(const JobOptions& options, int runs) {
     TerminalProgress progress(options.quiet || options.json);
     run = app::run_simulate(options.job, options.set, options.output, runs, options.threads, progress);
   }
-  if (!run) return report(run.error());
+  if (!run) return report(run.error(), options.job);
   if (options.json) {
     std::printf("%s\n", run->summary_json.c_str());
   } else if (!options.quiet) {

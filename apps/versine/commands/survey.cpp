@@ -16,7 +16,7 @@ int survey(const JobOptions& options) {
     TerminalProgress progress(options.quiet || options.json);
     run = app::run_survey(options.job, options.set, options.output, progress, log);
   }
-  if (!run) return report(run.error());
+  if (!run) return report(run.error(), options.job);
   return print_result(options, run->summary_text, run->summary_json, run->folder);
 }
 }  // namespace

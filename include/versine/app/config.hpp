@@ -72,7 +72,8 @@ class ConfigVisitor {
     v = names[index].second;
   }
 
-  /// A sub-table. `present` tells whether the file has it (a reader sets it; other visitors leave it).
+  /// A sub-table. `present`: the table switches something on; a reader tells there whether the file has it, others
+  /// leave it, and a template shows the table commented out.
   virtual void table(std::string_view key, std::string_view doc, const std::function<void(ConfigVisitor&)>& body,
                      bool* present = nullptr) = 0;
 
@@ -110,6 +111,8 @@ using Description = std::function<void(ConfigVisitor&)>;
 [[nodiscard]] std::string config_documentation(const Description& description);
 /// TOML with every key, its default commented out, its meaning above it.
 [[nodiscard]] std::string config_template(const Description& description);
+/// TOML with every line commented out.
+[[nodiscard]] std::string commented_out(const std::string& text);
 /// The effective values as a JSON object, as text.
 [[nodiscard]] std::string config_json(const Description& description);
 

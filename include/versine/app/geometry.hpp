@@ -103,6 +103,8 @@ struct Calibration {
   };
   std::vector<Pair> pairs;
 };
+/// Are there passes to compare?
+[[nodiscard]] Expected<void> check_passes(const CalibrateConfig& config);
 [[nodiscard]] Expected<Calibration> compute_calibration(const CalibrateConfig& config, Progress& progress);
 [[nodiscard]] Expected<GeometryRun> run_calibrate(const std::filesystem::path& job,
                                                   std::span<const std::string> overrides,

@@ -19,6 +19,8 @@ struct JobKind {
   void (*describe)(ConfigVisitor&);
   /// Reads the job and what it names as far as possible without running it; returns what was found, a line each.
   Expected<std::vector<std::string>> (*check)(const std::filesystem::path& job, std::span<const std::string> overrides);
+  /// A job that runs as it is, with which the template begins. Empty where a job needs files of the user's.
+  std::string_view starter = {};
 };
 
 /// All kinds. A new kind is one line in src/app/job_kinds.cpp.

@@ -1,15 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
 #include "versine/app/simulate_config.hpp"
 #include "versine/core/progress.hpp"
 #include "versine/simulation/recording.hpp"
+#include "versine/simulation/world.hpp"
 
 /// `versine simulate`: from a scenario file to a folder with recording, truth, and a survey job that is ready to run.
 namespace versine::app {
+
+/// What a scenario comes to before any sensor looks at it.
+struct SimulatedWorld {
+  std::shared_ptr<const simulation::World> world;  ///< rails, motion, error-free IMU
+  std::optional<JourneyNetwork> map;               ///< of a journey
+};
+[[nodiscard]] Expected<SimulatedWorld> prepare_world(const SimulateConfig& config);
 
 struct SimulateRun {
   std::filesystem::path folder;
