@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "versine/app/simulate.hpp"
 #include "versine/core/units.hpp"
 #include "versine/geodesy/attitude.hpp"
+#include "versine/simulation/irregularity.hpp"
 
 namespace versine::app {
 
@@ -22,6 +24,20 @@ std::string wheel_noise(const simulation::OdometerModel& o) {
   return fmt::format(
       "sigma_m = {:.3g}\nrandom_walk_mpsqrtm = {:.3g}\nscale_sigma = {:.3g}\nscale_walk_psqrts = {:.3g}\n", resolution,
       std::hypot(3e-5, slips), std::max(2.0 * o.scale, 1e-4), std::max(o.scale_walk, 1e-6));
+}
+
+/// How far the middle of two wheels strays from the way that their line points, m sqrt(m): of the rail's irregularity y
+/// it takes cos x - sin x / x, x = pi wheelbase / wavelength. As white noise of its density at 9 m: what shorter waves
+/// add the IMU sees by itself, of longer ones the wheels take little.
+double wander_of(const simulation::Scenario& s) {
+  using simulation::Irregularity, simulation::spectral_density;
+  constexpr double frequency = 1.0 / 9.0, least = 2e-6;
+  const double x = std::numbers::pi * (s.trolley.front_x - s.trolley.rear_x) * frequency;
+  const double share = std::cos(x) - std::sin(x) / x;
+  const auto density = [&](Irregularity kind) { return spectral_density(s.track.spectrum, kind, frequency); };
+  const double vertical = density(Irregularity::level) + 0.25 * density(Irregularity::cross_level);
+  const double lateral = density(Irregularity::alignment) + 0.25 * density(Irregularity::gauge);
+  return std::max(least, std::abs(share) * std::sqrt(0.5 * 0.5 * (vertical + lateral)));  // both axes; one-sided
 }
 
 /// Raw readings where there are some; positions of the same stations stand below them, to be put in their place.
@@ -81,15 +97,12 @@ std::string survey_job_for(const SimulateConfig& c, const simulation::SimulatedR
     if (!c.has_vehicle) text += wheel_noise(c.scenario.equipment.odometers.front());
   }
   if (!c.has_vehicle) {
-    // Rollers on rails: nothing but the rails' own irregularity moves a trolley sideways. Over metres a wheelbase of
-    // 1.2 m cancels it: 0.01 mm per metre is left on slab track, ten times that elsewhere; single angles are larger.
-    const auto spectrum = c.scenario.track.spectrum;
-    const bool smooth = spectrum == simulation::Spectrum::none || spectrum == simulation::Spectrum::china_ballastless;
-    const double rough = smooth ? 1.0 : 10.0;
+    // Rollers on rails: nothing but the rails' own irregularity moves a trolley sideways, and it comes back. The
+    // simulated Earth has normal gravity.
     text += fmt::format(
-        "\n[constraint]\nsigma_mps = {:.6g}\nangle_rad = {:.6g}\npeak_rad = {:.6g}\n\n[standstill]\nsigma_mps = "
-        "0.00003\nposition_sigma_m = 1e-5\n",
-        2e-5 * rough, 1e-5 * rough, 2e-4 * rough);
+        "\n[constraint]\nsigma_mps = 1e-6\nangle_rad = 5e-7\nwander_mm = {:.3g}\n\n[standstill]\nsigma_mps = "
+        "0.00003\nposition_sigma_m = 1e-5\n\n[filter]\ngravity_walk_mgalpsqrtkm = 0\n",
+        wander_of(c.scenario) / units::mm);
   }
   text += total_station_tables(c, r, C_bv);
   if (!c.has_vehicle && !r.imu.empty()) {
@@ -104,11 +117,11 @@ std::string survey_job_for(const SimulateConfig& c, const simulation::SimulatedR
         "contact_z_m = {:.6g}\nrange_x_m = {:.6g}\ngauge_offset_mm = {:.9g}\ngauge_temperature_mm_per_degC = {:.6g}\n",
         trolley.front_x, trolley.rear_x, trolley.other_x, trolley.reference_y, trolley.contact_z, trolley.range_x,
         trolley.gauge_offset / units::mm, trolley.gauge_temperature_factor / units::mm);
-    // Simulated wheels are clean: what is left is the shortest waves at a step of 0.25 m, and the gauge's noise in as
-    // many readings.
+    // Simulated wheels are clean: what is left is what resampling at 0.25 m takes of the shortest waves, and the
+    // gauge's noise in as many readings.
     const auto& legs = c.scenario.motion.legs;
     const double readings = legs.empty() ? 1.0 : std::max(1.0, 0.25 * c.gauge.rate / legs.front().speed);
-    text += fmt::format("contact_sigma_mm = 0.012\ngauge_sigma_mm = {:.3g}\n",
+    text += fmt::format("contact_sigma_mm = 0.006\ngauge_sigma_mm = {:.3g}\n",
                         std::hypot(c.gauge.noise / std::sqrt(readings), c.gauge.offset_error) / units::mm);
     if (!r.gauge.empty()) text += "[geometry.gauge]\nfile = \"gauge.csv\"\n";
     if (!r.sleeper.empty()) text += "[geometry.sleeper]\nfile = \"sleeper.csv\"\n";

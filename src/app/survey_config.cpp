@@ -127,6 +127,13 @@ void describe_wheels(ConfigVisitor& v, SurveyConfig& c) {
     t.value("angle_rad", e.constraint_angle,
             {.doc = "Motion across per motion forward (irregularity, side slip).", .unit = "rad", .min = 0, .max = 1});
     t.value("correlation_m", e.constraint_correlation, metres("Over this distance that angle stays alike."));
+    t.value("wander_mm", e.constraint_wander,
+            {.doc = "Wheels that guide a beam along a rail stray from where it points, and come back: mean over one "
+                    "metre. Positive: the constraint holds for the sum of their way, and sigma and angle are what adds "
+                    "up over a run. 0: it holds for the velocity only, for wheels that may slip.",
+             .unit = "mm sqrt(m)",
+             .scale = units::mm,
+             .min = 0});
     t.value("interval_s", e.constraint_interval, seconds("Between two applications; 0: every covariance step."));
     t.value("peak_rad", e.constraint_peak,
             {.doc = "Single angles may be so much larger before they count as faults: short irregularities, which a "

@@ -5,16 +5,16 @@
 
 namespace versine::filter {
 
-template <int N>
-bool rts_gain(const StateMatrix<N>& P, const Transition<N>& phi, StateMatrix<N>& gain, StateMatrix<N>& predicted) {
+template <int N, int M>
+bool rts_gain(const StateMatrix<N>& P, const Transition<N, M>& phi, StateMatrix<N>& gain, StateMatrix<N>& predicted) {
   const Eigen::Index n = P.rows();
   predicted = P;
   predict<N>(predicted, phi);
   // Phi P, then solve: A' = predicted^-1 (Phi P). Scaling to unit diagonal first: metres and radians per second differ
   // by ten orders of magnitude.
   StateMatrix<N> phi_p(n, n);
-  phi_p.template topRows<moving>().noalias() = phi.top.lazyProduct(P);
-  phi_p.bottomRows(n - moving) = phi.decay.tail(n - moving).asDiagonal() * P.bottomRows(n - moving);
+  phi_p.template topRows<M>().noalias() = phi.top.lazyProduct(P);
+  phi_p.bottomRows(n - M) = phi.decay.tail(n - M).asDiagonal() * P.bottomRows(n - M);
   if (!(predicted.diagonal().minCoeff() > 0.0)) return false;
   const StateVector<N> scale = predicted.diagonal().cwiseSqrt().cwiseInverse();
   StateMatrix<N> scaled = scale.asDiagonal() * predicted * scale.asDiagonal();
@@ -30,11 +30,13 @@ bool rts_gain(const StateMatrix<N>& P, const Transition<N>& phi, StateMatrix<N>&
   return true;
 }
 
-template bool rts_gain<23>(const StateMatrix<23>&, const Transition<23>&, StateMatrix<23>&, StateMatrix<23>&);
-template bool rts_gain<25>(const StateMatrix<25>&, const Transition<25>&, StateMatrix<25>&, StateMatrix<25>&);
-template bool rts_gain<26>(const StateMatrix<26>&, const Transition<26>&, StateMatrix<26>&, StateMatrix<26>&);
-template bool rts_gain<29>(const StateMatrix<29>&, const Transition<29>&, StateMatrix<29>&, StateMatrix<29>&);
-template bool rts_gain<Eigen::Dynamic>(const StateMatrix<Eigen::Dynamic>&, const Transition<Eigen::Dynamic>&,
-                                       StateMatrix<Eigen::Dynamic>&, StateMatrix<Eigen::Dynamic>&);
+VERSINE_RTS_GAIN(23, moving);
+VERSINE_RTS_GAIN(25, moving);
+VERSINE_RTS_GAIN(26, moving);
+VERSINE_RTS_GAIN(29, moving);
+VERSINE_RTS_GAIN(Eigen::Dynamic, moving);
+VERSINE_RTS_GAIN(25, moving_with_path);
+VERSINE_RTS_GAIN(28, moving_with_path);
+VERSINE_RTS_GAIN(Eigen::Dynamic, moving_with_path);
 
 }  // namespace versine::filter

@@ -48,7 +48,7 @@ geodesy::Trajectory dead_reckon(const AidedInsInput& in, const AidedInsOptions& 
                                      [](const SensorErrorSample& s, Time x) { return s.time < x; });
     const InsLayout layout = InsLayout::from(o);
     const auto& s = it == solution.sensor_errors.end() ? solution.sensor_errors.back() : *it;
-    return 1.0 + static_cast<double>(s.value[layout.odometer_scale.offset - filter::moving]);
+    return 1.0 + static_cast<double>(s.value[layout.odometer_scale.offset - layout.moving()]);
   };
   const auto distance = [&](Time at) {
     const std::size_t i = std::clamp<std::size_t>(in.odometer.lower_bound(at), 1, in.odometer.size() - 1);
@@ -70,6 +70,23 @@ geodesy::Trajectory dead_reckon(const AidedInsInput& in, const AidedInsOptions& 
   }
   return out;
 }
+
+/// The common layouts are known to the compiler.
+auto run_of(const InsLayout& layout) {
+  using detail::run_segment, filter::moving, filter::moving_with_path;
+  constexpr int any = Eigen::Dynamic;
+  const int n = layout.size();
+  if (layout.path.enabled()) {
+    return n == 25   ? &run_segment<25, moving_with_path>
+           : n == 28 ? &run_segment<28, moving_with_path>
+                     : &run_segment<any, moving_with_path>;
+  }
+  return n == 23   ? &run_segment<23, moving>
+         : n == 25 ? &run_segment<25, moving>
+         : n == 26 ? &run_segment<26, moving>
+         : n == 29 ? &run_segment<29, moving>
+                   : &run_segment<any, moving>;
+}
 }  // namespace
 
 Expected<AidedInsResult> run_aided_ins(const AidedInsInput& input, const AidedInsOptions& options, Progress& progress,
@@ -77,7 +94,7 @@ Expected<AidedInsResult> run_aided_ins(const AidedInsInput& input, const AidedIn
   if (const auto checked = check(input, options); !checked) return fail(checked.error());
   AidedInsResult result;
   const InsLayout layout = InsLayout::from(options, input.landmarks);
-  result.solution.error_names.assign(layout.names.begin() + filter::moving, layout.names.end());
+  result.solution.error_names.assign(layout.names.begin() + layout.moving(), layout.names.end());
   result.solution.smoothed.scale = result.solution.forward.scale = input.imu.scale;
   result.solution.smoothed.origin = "aided INS, smoothed";
   result.solution.forward.origin = "aided INS, forward";
@@ -96,12 +113,7 @@ Expected<AidedInsResult> run_aided_ins(const AidedInsInput& input, const AidedIn
     log.info(fmt::format("segment {} from {:.3f} s to {:.3f} s: heading from {}, sigma {:.3f} deg", number + 1,
                          segment.from.seconds(), segment.to.seconds(), start->alignment.method,
                          start->alignment.sigma.z() / units::deg));
-    Expected<Previous> left = layout.size() == 23   ? detail::run_segment<23>(context, segment, *start, number)
-                              : layout.size() == 25 ? detail::run_segment<25>(context, segment, *start, number)
-                              : layout.size() == 26 ? detail::run_segment<26>(context, segment, *start, number)
-                              : layout.size() == 29
-                                  ? detail::run_segment<29>(context, segment, *start, number)
-                                  : detail::run_segment<Eigen::Dynamic>(context, segment, *start, number);
+    Expected<Previous> left = run_of(layout)(context, segment, *start, number);
     if (!left) return fail(left.error());
     previous = std::move(*left);
     ++number;

@@ -35,7 +35,7 @@ filter::StateVector<N> corrections(const Steps& s, std::size_t k, int n) {
 
 /// The smoothers: pure functions over the steps of the forward pass. `wanted(k)` tells what is asked for at step k,
 /// `take(k, smoothed)` receives each step, last first, `chain(k, covariance, gain)` each chain epoch.
-template <int N>
+template <int N, int M>
 class Backward {
  public:
   using Vector = filter::StateVector<N>;
@@ -91,9 +91,9 @@ class Backward {
       if (!chain_) return true;
       if (k + 1 < b_.s_.steps.size()) {
         Matrix gain(b_.n_, b_.n_), predicted(b_.n_, b_.n_);
-        filter::Transition<N> phi;
-        unpack_transition<N>(b_.s_.steps[k + 1], b_.noise_, phi, b_.n_);
-        if (!filter::rts_gain<N>(P, phi, gain, predicted)) return false;
+        filter::Transition<N, M> phi;
+        unpack_transition(b_.s_.steps[k + 1], b_.noise_, phi, b_.n_);
+        if (!filter::rts_gain(P, phi, gain, predicted)) return false;
         product_ = started_ ? Matrix(gain * product_) : gain;
       }
       if (w.chain) {
@@ -116,15 +116,15 @@ class Backward {
                                                  const Wish& wanted, const Take& take) {
     Matrix P(n_, n_), gain(n_, n_), predicted(n_, n_), rest(n_, n_), noise(n_, n_);
     SmoothedStep<N> out;
-    filter::Transition<N> phi;
+    filter::Transition<N, M> phi;
     for (std::size_t k = end; k-- > 0;) {
       unpack<N>(s_.steps[k], P);
       if (k + 1 == s_.steps.size()) {
         out.x = Vector::Zero(n_);
         smoothed = P;
       } else {
-        unpack_transition<N>(s_.steps[k + 1], noise_, phi, n_);
-        if (!filter::rts_gain<N>(P, phi, gain, predicted)) return std::nullopt;
+        unpack_transition(s_.steps[k + 1], noise_, phi, n_);
+        if (!filter::rts_gain(P, phi, gain, predicted)) return std::nullopt;
         out.x = (gain * before).eval();
         // (I - A Phi) P (I - A Phi)' + A (Q + S) A', with half of the noise before Phi and half after it.
         const Matrix transition = phi.matrix();
@@ -179,9 +179,9 @@ class Backward {
       }
       filter::undo_row<N>(a, h, gain, double(row.innovation), double(row.variance));
     }
-    filter::Transition<N> phi;
-    unpack_transition<N>(step, noise_, phi, n_);
-    filter::undo_transition<N>(a, phi);
+    filter::Transition<N, M> phi;
+    unpack_transition(step, noise_, phi, n_);
+    filter::undo_transition(a, phi);
   }
 
   static constexpr double least = 1e-5;  ///< of the filter's variance that may be left: two digits of a float

@@ -12,7 +12,7 @@
 namespace versine::fusion::detail {
 
 /// The forward Kalman filter over one segment: propagates, applies each aid at its own time, emits steps.
-template <int N>
+template <int N, int M>
 class Forward {
  public:
   Forward(const AidedInsInput& input, const AidedInsOptions& options, const InsLayout& layout,
@@ -82,10 +82,10 @@ class Forward {
     if (changed) odometer_in_hold_ = false, last_zero_ = begin;
     const bool resting = held && (begin - last_zero_).seconds() > o_.zero_interval - rest_window() - 0.5 * dt_;
     if (!resting) rest_way_.setZero(), rest_seconds_ = 0.0;
-    const DistanceRate rate_before = distance_rate(on_wheels(moment_), l_);
+    const WheelVelocity wheel_before = wheel_velocity(on_wheels(moment_), l_);
     accumulator_.reset();
     Eigen::Vector3d turned = Eigen::Vector3d::Zero();
-    double way = 0.0;
+    Eigen::Vector3d way = Eigen::Vector3d::Zero();
     walk.advance(e.nav, moment_.C_nb, e.imu, end, held,
                  [&](const inertial::StepGeometry& g, const inertial::Increment& piece, const inertial::NavState&) {
                    accumulator_.add(g, piece);
@@ -94,14 +94,16 @@ class Forward {
                    moment_.omega_nb_b = moment_.omega_ib_b - g.C_nb_middle.transpose() * (g.omega_ie + g.omega_en);
                    const Eigen::Vector3d wheel_b =
                        g.C_nb_middle.transpose() * g.v_middle + moment_.omega_nb_b.cross(e.wheel_lever);
-                   way += e.C_vb.row(0).dot(wheel_b) * piece.dt;
+                   way += e.C_vb * wheel_b * piece.dt;
                    if (resting) rest_way_ += g.v_middle * piece.dt, rest_seconds_ += piece.dt;
                  });
-    if (held) way = 0.0;
-    e.distance += (1.0 + e.odometer_scale) * way;
+    if (held) way.setZero();
+    e.distance += (1.0 + e.odometer_scale) * way.x();
+    if constexpr (M == filter::moving_with_path) e.path += way.tail<2>();
     dt_ = (end - begin).seconds();
     mean_rate_ib_ = turned / dt_;
-    way_ = std::abs(way);
+    way_ = std::abs(way.x());
+    way_since_constraint_ += way_;
     // The estimate fades as its error does (NoiseModel), or the filter believes in a bias that is long gone.
     if (l_.gnss_bias.enabled()) e.gnss_bias *= std::exp(-dt_ / o_.gnss_bias_time);
 
@@ -113,6 +115,7 @@ class Forward {
                    way_,
                    static_cast<float>(std::exchange(lost_position_, 0.0) + rocking),
                    static_cast<float>(std::exchange(lost_velocity_, 0.0)),
+                   static_cast<float>(std::exchange(lost_path_, 0.0)),
                    kept,
                    !distance_known_ || restart_distance_};
     const auto reading =
@@ -122,9 +125,9 @@ class Forward {
       anchored_ = distance_known_ = true;
       restart_distance_ = false;
     }
-    fill_transition(rate_before);
-    filter::predict<N>(P_, transition_);
-    pack_transition<N>(transition_, out.arena, step_);
+    fill_transition(wheel_before);
+    filter::predict(P_, transition_);
+    pack_transition(transition_, out.arena, step_);
     step_.first_row = out.rows.size();
     step_.rows = 0;
   }
@@ -141,11 +144,10 @@ class Forward {
     return kept;
   }
 
-  /// The rows of position, velocity and attitude from the accumulated matrices; the row of the distance from its rate
-  /// before and after (trapezoidal rule).
-  void fill_transition(const DistanceRate& before) {
-    const int n = l_.size();
-    transition_.top.setZero(filter::moving, n);
+  /// The rows of position, velocity and attitude from the accumulated matrices; those of the wheels' ways from the
+  /// wheels' velocity before and after (trapezoidal rule).
+  void fill_transition(const WheelVelocity& before) {
+    transition_.top.setZero(M, l_.size());
     for (int i = 0; i < 9; ++i) {
       const auto& row = accumulator_.rows()[static_cast<std::size_t>(i)];
       transition_.top.row(i).template head<9>() = row.template head<9>().matrix().transpose();
@@ -153,18 +155,29 @@ class Forward {
           row.template segment<12>(9).matrix().transpose();
     }
     if (held_) transition_.top.template topRows<3>().setIdentity();
-    noise_.template fill<N>(step_.noise, transition_);
-    if (step_.noise.new_distance) return;
+    noise_.fill(step_.noise, transition_);
+    constexpr bool with_path = M == filter::moving_with_path;
     if (held_) {
-      transition_.top(l_.distance.offset, l_.distance.offset) = 1.0;
+      if (!step_.noise.new_distance) transition_.top(l_.distance.offset, l_.distance.offset) = 1.0;
+      if constexpr (with_path) transition_.top.template block<2, 2>(l_.path.offset, l_.path.offset).setIdentity();
       return;
     }
-    const DistanceRate after = distance_rate(on_wheels(moment_), l_);
-    const int d = l_.distance.offset, m = n - filter::moving;
+    const WheelVelocity after = wheel_velocity(on_wheels(moment_), l_);
+    if (!step_.noise.new_distance) {
+      fill_way(l_.distance.offset, distance_rate(before, moment_, l_).H, distance_rate(after, moment_, l_).H);
+    }
+    if constexpr (with_path) {
+      for (int i = 0; i < 2; ++i) fill_way(l_.path.offset + i, before.H.row(1 + i), after.H.row(1 + i));
+    }
+  }
+
+  template <class Row>
+  void fill_way(int d, const Row& before, const Row& after) {
+    const int m = l_.size() - M;
     auto row = transition_.top.row(d);
-    row.noalias() = after.H.template head<9>() * transition_.top.template topRows<9>();
-    row.tail(m) += after.H.tail(m).cwiseProduct(transition_.decay.tail(m).transpose());
-    row = (0.5 * dt_ * (row + before.H)).eval();
+    row.noalias() = after.template head<9>() * transition_.top.template topRows<9>();
+    row.tail(m) += after.tail(m).cwiseProduct(transition_.decay.tail(m).transpose());
+    row = (0.5 * dt_ * (row + before)).eval();
     row[d] += 1.0;
   }
 
@@ -234,6 +247,11 @@ class Forward {
     const double since = std::min(1.0, (t - last_constraint_).seconds());
     if (since < std::max(o_.constraint_interval, 0.75 / o_.covariance_rate)) return;
     last_constraint_ = t;
+    const double way = std::max(1e-3, std::exchange(way_since_constraint_, 0.0));
+    if constexpr (M == filter::moving_with_path) {
+      update("wheel path", t, wheel_path(moment_, l_, o_.constraint_wander / std::sqrt(way)), true, out);
+      return;
+    }
     // The sideways angle stays alike over a wheelbase; taken as white at this rate it must be as much larger.
     const double speed = moment_.estimate.nav.v_eb_n.norm();
     const double alike = std::max(1.0, 2.0 * o_.constraint_correlation / std::max(1e-3, speed * since));
@@ -322,6 +340,8 @@ class Forward {
     } else if (sensor == "gnss position" || sensor == "landmark") {
       lost_position_ = std::max(lost_position_, square);
       lost_velocity_ = std::max(lost_velocity_, 0.01 * square);
+    } else if (sensor == "wheel path") {
+      lost_path_ = std::max(lost_path_, square);
     } else {
       lost_velocity_ = std::max(lost_velocity_, square);
     }
@@ -352,12 +372,13 @@ class Forward {
   NoiseModel noise_;
   InsMoment moment_;
   filter::StateMatrix<N> P_;
-  filter::Transition<N> transition_;
+  filter::Transition<N, M> transition_;
   inertial::TransitionAccumulator accumulator_;
   Step step_;
   Eigen::Vector3d mean_rate_ib_ = Eigen::Vector3d::Zero(), rest_way_ = Eigen::Vector3d::Zero();
   double rest_seconds_ = 0.0;
-  double dt_ = 0.0, way_ = 0.0, lost_position_ = 0.0, lost_velocity_ = 0.0;
+  double dt_ = 0.0, way_ = 0.0, lost_position_ = 0.0, lost_velocity_ = 0.0, lost_path_ = 0.0,
+         way_since_constraint_ = 0.0;
   bool distance_known_ = false, anchored_ = false, restart_distance_ = false, standing_ = false, report_done_ = false,
        held_ = false, odometer_in_hold_ = false;
   std::size_t standstill_ = 0;

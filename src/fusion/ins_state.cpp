@@ -15,6 +15,10 @@ InsLayout InsLayout::from(const AidedInsOptions& o, const Series<sensors::Landma
   l.velocity = a.add<3>("velocity", "ned");
   l.attitude = a.add<3>("attitude", "ned");
   l.distance = a.add<1>("distance");
+  if (o.constraint && o.constraint_wander > 0.0) {
+    l.path.offset = a.add<1>("path_right").offset;
+    a.add<1>("path_down");
+  }
   l.gyro_bias = a.add<3>("gyro_bias", "xyz");
   l.accelerometer_bias = a.add<3>("accelerometer_bias", "xyz");
   l.gyro_scale = a.add<3>("gyro_scale", "xyz");
@@ -46,6 +50,7 @@ InsEstimate without_error(const InsEstimate& estimate, const InsLayout& l, const
   e.nav.v_eb_n -= part(l.velocity);
   e.nav.q_nb = (geodesy::from_rotation_vector(part(l.attitude)) * e.nav.q_nb).normalized();
   e.distance -= x[l.distance.offset];
+  if (l.path.enabled()) e.path -= part(l.path);
   e.imu.gyro_bias += part(l.gyro_bias);
   e.imu.accelerometer_bias += part(l.accelerometer_bias);
   e.imu.gyro_scale += part(l.gyro_scale);

@@ -18,15 +18,19 @@ struct RunContext {
 };
 
 /// Filter, smoother and output of one segment; appends to the result. Returns what it leaves to the next segment.
-template <int N>
+template <int N, int M>
 [[nodiscard]] Expected<Previous> run_segment(const RunContext& context, const Segment& segment, const Start& start,
                                              std::int32_t number);
 
-extern template Expected<Previous> run_segment<23>(const RunContext&, const Segment&, const Start&, std::int32_t);
-extern template Expected<Previous> run_segment<25>(const RunContext&, const Segment&, const Start&, std::int32_t);
-extern template Expected<Previous> run_segment<26>(const RunContext&, const Segment&, const Start&, std::int32_t);
-extern template Expected<Previous> run_segment<29>(const RunContext&, const Segment&, const Start&, std::int32_t);
-extern template Expected<Previous> run_segment<Eigen::Dynamic>(const RunContext&, const Segment&, const Start&,
-                                                               std::int32_t);
+#define VERSINE_RUN_SEGMENT(N, M) \
+  template Expected<Previous> run_segment<N, M>(const RunContext&, const Segment&, const Start&, std::int32_t)
+extern VERSINE_RUN_SEGMENT(23, filter::moving);
+extern VERSINE_RUN_SEGMENT(25, filter::moving);
+extern VERSINE_RUN_SEGMENT(26, filter::moving);
+extern VERSINE_RUN_SEGMENT(29, filter::moving);
+extern VERSINE_RUN_SEGMENT(Eigen::Dynamic, filter::moving);
+extern VERSINE_RUN_SEGMENT(25, filter::moving_with_path);
+extern VERSINE_RUN_SEGMENT(28, filter::moving_with_path);
+extern VERSINE_RUN_SEGMENT(Eigen::Dynamic, filter::moving_with_path);
 
 }  // namespace versine::fusion::detail

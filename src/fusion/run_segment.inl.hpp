@@ -94,7 +94,7 @@ inline Eigen::VectorXf parameter_values(const InsEstimate& e, const InsLayout& l
   set(l.gnss_bias, e.gnss_bias);
   set(l.landmark_position, e.landmark_error.head<3>());
   set(l.landmark_attitude, e.landmark_error.tail<3>());
-  return v.tail(l.size() - filter::moving);
+  return v.tail(l.size() - l.moving());
 }
 
 /// Position and attitude first, as ErrorChain wants them.
@@ -104,7 +104,7 @@ inline std::vector<int> chain_order(int n) {
   return order;
 }
 
-template <int N>
+template <int N, int M>
 bool smooth(const RunContext& c, const Steps& steps, SmootherKind kind, std::vector<Node>& nodes) {
   const int n = c.layout.size();
   const NoiseModel noise(c.options, c.layout);
@@ -133,8 +133,8 @@ bool smooth(const RunContext& c, const Steps& steps, SmootherKind kind, std::vec
     set_covariance(node, s.navigation);
     if (wanted(k).variances) {
       const InsEstimate e = without_error(steps.waypoints[k].estimate, c.layout, s.x);
-      errors.push_back({time(k), parameter_values(e, c.layout),
-                        s.variance.tail(n - filter::moving).cwiseSqrt().template cast<float>()});
+      errors.push_back(
+          {time(k), parameter_values(e, c.layout), s.variance.tail(n - M).cwiseSqrt().template cast<float>()});
     }
   };
   const std::vector<int> order = chain_order(n);
@@ -145,13 +145,13 @@ bool smooth(const RunContext& c, const Steps& steps, SmootherKind kind, std::vec
     }
     return p;
   };
-  typename Backward<N>::Chain chain;
+  typename Backward<N, M>::Chain chain;
   if (with_chain) {
     chain = [&](std::size_t k, const filter::StateMatrix<N>& P, const filter::StateMatrix<N>& gain, bool linked) {
       links.push_back({time(k), permuted(P), linked ? permuted(gain) : Eigen::MatrixXf()});
     };
   }
-  Backward<N> backward(steps, noise, n);
+  Backward<N, M> backward(steps, noise, n);
   const auto done = kind == SmootherKind::bryson_frazier ? backward.bryson_frazier(wanted, take, chain)
                                                          : backward.rauch_tung_striebel(wanted, take, chain);
   if (!done) return false;
@@ -163,20 +163,20 @@ bool smooth(const RunContext& c, const Steps& steps, SmootherKind kind, std::vec
   return true;
 }
 
-template <int N>
-geodesy::TrajectoryPoint point_of(const Forward<N>& forward, std::int32_t number) {
+template <int N, int M>
+geodesy::TrajectoryPoint point_of(const Forward<N, M>& forward, std::int32_t number) {
   const inertial::NavState& nav = forward.estimate().nav;
   Node node;
   set_covariance(node, forward.covariance());
   return {nav.time, nav.position, nav.v_eb_n, nav.q_nb, node.position, node.velocity, node.attitude, number};
 }
 
-template <int N>
+template <int N, int M>
 Expected<Previous> run_segment(const RunContext& c, const Segment& segment, const Start& start, std::int32_t number) {
   const int n = c.layout.size();
   Steps steps;
   SegmentStart report{segment.from, segment.to, start.alignment, {}, {}};
-  Forward<N> forward(c.input, c.options, c.layout, c.standstills, c.judge);
+  Forward<N, M> forward(c.input, c.options, c.layout, c.standstills, c.judge);
   const bool done = forward.run(segment, start, steps, report, [&](double fraction) {
     c.progress.report("forward pass", fraction);
     if (c.watch != nullptr) c.watch->forward(point_of(forward, number), c.result);
@@ -205,7 +205,7 @@ Expected<Previous> run_segment(const RunContext& c, const Segment& segment, cons
 
   c.progress.report("smoother", 0.0);
   const SmootherKind kind = c.options.smoother;
-  if (!smooth<N>(c, steps, kind, nodes)) {
+  if (!smooth<N, M>(c, steps, kind, nodes)) {
     return fail({.field = "smoother",
                  .found = "a covariance that is not positive definite",
                  .expected = "positive variances",

@@ -2,5 +2,5 @@
 #include "run_segment.inl.hpp"
 
 namespace versine::fusion::detail {
-template Expected<Previous> run_segment<Eigen::Dynamic>(const RunContext&, const Segment&, const Start&, std::int32_t);
+VERSINE_RUN_SEGMENT(Eigen::Dynamic, filter::moving);
 }

@@ -185,6 +185,8 @@ Eigen::VectorXd initial_sigma(const AidedInsOptions& o, const InsLayout& l, cons
   set(l.velocity, velocity);
   sigma.segment<3>(l.attitude.offset) = s.alignment.sigma;
   set(l.distance, o.odometer_sigma);
+  // Where the wheels' way is counted from tells nothing.
+  set(l.path, 10.0 * o.constraint_wander);
   set(l.gyro_bias, bias_sigma(o.imu_errors.gyro));
   set(l.accelerometer_bias, bias_sigma(o.imu_errors.accelerometer));
   set(l.gyro_scale, o.imu_errors.gyro.scale_factor + 1e-9);
@@ -288,7 +290,7 @@ Expected<Start> start_of(const Segment& segment, const AidedInsInput& in, const 
   }
   s.covariance = initial_sigma(o, layout, s, position_sigma, velocity_sigma).cwiseAbs2().asDiagonal();
   if (previous) {
-    const auto n = layout.size() - filter::moving;
+    const auto n = layout.size() - layout.moving();
     s.covariance.bottomRightCorner(n, n) = previous->covariance.bottomRightCorner(n, n);
   } else {
     correlate_level(o, layout, C_nb, rough, s);

@@ -17,6 +17,7 @@ struct StepNoise {
   double way = 0.0;       ///< m travelled
   float position = 0.0F;  ///< m^2 added: rocking where a standstill begins or ends, and lost trust in the filter
   float velocity = 0.0F;  ///< (m/s)^2 added after the filter lost trust in itself
+  float path = 0.0F;      ///< m^2 added to the wheels' way sideways after a fault
   /// Where a landmark ends the step: how much of the landmarks' shared error stays; 1 elsewhere.
   Eigen::Matrix<float, 6, 1> shared_kept = Eigen::Matrix<float, 6, 1>::Ones();
   bool new_distance = true;  ///< the odometer's distance starts anew (or is not in use): nothing of its past is kept
@@ -32,8 +33,8 @@ class NoiseModel {
         gyro_(densities(o.imu_errors.gyro, o.instability)),
         accelerometer_(densities(o.imu_errors.accelerometer, o.instability)) {}
 
-  template <int N>
-  void fill(const StepNoise& s, filter::Transition<N>& t) const {
+  template <int N, int M>
+  void fill(const StepNoise& s, filter::Transition<N, M>& t) const {
     const int n = l_.size();
     t.decay.setOnes(n);
     t.noise.setZero(n);
@@ -45,6 +46,7 @@ class NoiseModel {
     set(l_.attitude, gyro_.white * s.dt);
     set(l_.distance, s.new_distance ? 2.0 * o_.odometer_sigma * o_.odometer_sigma
                                     : o_.odometer_random_walk * o_.odometer_random_walk * s.way + 1e-14);
+    if (l_.path.enabled()) set(l_.path, path_walk(s.way, s.dt) + double{s.path});
     set(l_.gyro_bias, gyro_.walk * s.dt);
     set(l_.accelerometer_bias, accelerometer_.walk * s.dt + o_.gravity_walk * o_.gravity_walk * s.way);
     set(l_.odometer_scale, o_.odometer_scale_walk * o_.odometer_scale_walk * s.dt);
@@ -67,6 +69,11 @@ class NoiseModel {
   }
 
  private:
+  /// What a sideways angle and a velocity that are alike for a while add up to.
+  [[nodiscard]] double path_walk(double way, double dt) const {
+    return std::pow(o_.constraint_angle, 2) * way * std::max(way, 2.0 * o_.constraint_correlation) +
+           std::pow(o_.constraint_sigma * dt, 2) + 1e-14;
+  }
   /// Of a triad: of its white noise, and of the walk of its bias.
   struct Densities {
     double white = 0.0, walk = 0.0;
@@ -152,27 +159,25 @@ void unpack(const Step& s, filter::StateMatrix<N>& P) {
   }
 }
 
-template <int N>
-void pack_transition(const filter::Transition<N>& t, Arena& arena, Step& s) {
+template <int N, int M>
+void pack_transition(const filter::Transition<N, M>& t, Arena& arena, Step& s) {
   s.transition = arena.take(static_cast<std::size_t>(t.top.size()));
   for (Eigen::Index j = 0; j < t.top.cols(); ++j) {
-    for (int i = 0; i < filter::moving; ++i) {
-      s.transition[static_cast<std::size_t>(j * filter::moving + i)] =
-          static_cast<float>(t.top(i, j) - (i == j ? 1.0 : 0.0));
+    for (int i = 0; i < M; ++i) {
+      s.transition[static_cast<std::size_t>(j * M + i)] = static_cast<float>(t.top(i, j) - (i == j ? 1.0 : 0.0));
     }
   }
 }
 
-template <int N>
-void unpack_transition(const Step& s, const NoiseModel& noise, filter::Transition<N>& t, int n) {
-  t.top.resize(filter::moving, n);
+template <int N, int M>
+void unpack_transition(const Step& s, const NoiseModel& noise, filter::Transition<N, M>& t, int n) {
+  t.top.resize(M, n);
   for (Eigen::Index j = 0; j < n; ++j) {
-    for (int i = 0; i < filter::moving; ++i) {
-      t.top(i, j) =
-          static_cast<double>(s.transition[static_cast<std::size_t>(j * filter::moving + i)]) + (i == j ? 1.0 : 0.0);
+    for (int i = 0; i < M; ++i) {
+      t.top(i, j) = static_cast<double>(s.transition[static_cast<std::size_t>(j * M + i)]) + (i == j ? 1.0 : 0.0);
     }
   }
-  noise.fill<N>(s.noise, t);
+  noise.fill(s.noise, t);
 }
 
 }  // namespace versine::fusion::detail

@@ -157,7 +157,9 @@ void add_gauge(Stage& s, const WheelChord& wheels) {
   Column g =
       s.out.add("gauge", "mm", 1e-3, "Track gauge (Chen 2018 eqs. 1 and 2), corrected for temperature and curve");
   Column d = s.out.add("gauge_deviation", "mm", 1e-3, "Gauge minus nominal gauge");
-  const float sigma = static_cast<float>(std::hypot(s.input.trolley.gauge_sigma, s.input.trolley.contact_sigma));
+  // The bow is a versine of the reference rail, each of whose points is a mean of two wheels.
+  const float sigma =
+      static_cast<float>(std::hypot(s.input.trolley.gauge_sigma, std::sqrt(1.75) * s.input.trolley.contact_sigma));
   for (std::size_t i = 0; i < s.out.size(); ++i) {
     // The sensor measures from the chord A1-A2: a rail that lies nearer to A3 than its chord has less gauge.
     g.value[i] = s.rails.sensed_gauge[i] - (s.rails.reference_is_left ? 1.0 : -1.0) * wheels.bow[i];
@@ -175,7 +177,8 @@ void add_gauge_cross_level_twist(Stage& s) {
   const std::size_t n = s.out.size();
   const WheelChord wheels = wheel_chord(s);
   add_gauge(s, wheels);
-  const double noise = t.contact_sigma * std::sqrt(1.5);  // two wheels on one side, one on the other
+  // Two wheels on one side, one on the other; and the bend, a versine of points that are means of two wheels.
+  const double noise = t.contact_sigma * std::sqrt(1.5 + 0.75);
   const Eigen::Matrix3d C_bv = geodesy::to_matrix(t.mounting).transpose();
   std::vector<float> sigma(n, nanf);
   std::vector<double> cross_level = s.rails.cross_level;

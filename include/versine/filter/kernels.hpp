@@ -16,13 +16,14 @@ using StateVector = Eigen::Matrix<double, N, 1, Eigen::ColMajor, capacity<N>, 1>
 template <int N>
 using StateMatrix = Eigen::Matrix<double, N, N, Eigen::ColMajor, capacity<N>, capacity<N>>;
 
-inline constexpr int moving = 10;  ///< states that move: position, velocity, attitude, odometer distance
+inline constexpr int moving = 10;            ///< states that move: position, velocity, attitude, odometer distance
+inline constexpr int moving_with_path = 12;  ///< and the wheels' ways to the right and down
 
-/// A transition: the first `moving` rows are full, a parameter only decays (1: constant). White noise of the variances
+/// A transition: the first M rows are full, a parameter only decays (1: constant). White noise of the variances
 /// `noise` acts half before and half after it (trapezoidal rule).
-template <int N>
+template <int N, int M = moving>
 struct Transition {
-  Eigen::Matrix<double, moving, N, Eigen::ColMajor, moving, capacity<N>> top;
+  Eigen::Matrix<double, M, N, Eigen::ColMajor, M, capacity<N>> top;
   StateVector<N> decay;  ///< entries of the moving states are not used
   StateVector<N> noise;
 
@@ -30,36 +31,36 @@ struct Transition {
   [[nodiscard]] StateMatrix<N> matrix() const {
     StateMatrix<N> m = StateMatrix<N>::Zero(decay.size(), decay.size());
     m.diagonal() = decay;
-    m.template topRows<moving>() = top;
+    m.template topRows<M>() = top;
     return m;
   }
 };
 
 /// P after the transition; symmetric.
-template <int N>
-void predict(StateMatrix<N>& P, const Transition<N>& phi) {
+template <int N, int M>
+void predict(StateMatrix<N>& P, const Transition<N, M>& phi) {
   const Eigen::Index n = P.rows();
   P.diagonal() += 0.5 * phi.noise;
-  Eigen::Matrix<double, moving, N, Eigen::ColMajor, moving, capacity<N>> rows(moving, n);
+  Eigen::Matrix<double, M, N, Eigen::ColMajor, M, capacity<N>> rows(M, n);
   // Column by column: a sum of scaled columns of `top` keeps everything in registers.
-  using Column = Eigen::Matrix<double, moving, 1>;
+  using Column = Eigen::Matrix<double, M, 1>;
   for (Eigen::Index j = 0; j < n; ++j) {
     Column sum = phi.top.col(0) * P(0, j);
     for (Eigen::Index k = 1; k < n; ++k) sum += phi.top.col(k) * P(k, j);
     rows.col(j) = sum;
   }
-  Eigen::Matrix<double, moving, moving> corner;
-  for (Eigen::Index j = 0; j < moving; ++j) {
+  Eigen::Matrix<double, M, M> corner;
+  for (Eigen::Index j = 0; j < M; ++j) {
     Column sum = rows.col(0) * phi.top(j, 0);
     for (Eigen::Index k = 1; k < n; ++k) sum += rows.col(k) * phi.top(j, k);
     corner.col(j) = sum;
   }
-  for (Eigen::Index j = moving; j < n; ++j) {
-    P.col(j).template head<moving>() = rows.col(j) * phi.decay[j];
-    P.col(j).tail(n - moving) = (phi.decay[j] * P.col(j).tail(n - moving)).cwiseProduct(phi.decay.tail(n - moving));
-    P.row(j).template head<moving>() = P.col(j).template head<moving>().transpose();
+  for (Eigen::Index j = M; j < n; ++j) {
+    P.col(j).template head<M>() = rows.col(j) * phi.decay[j];
+    P.col(j).tail(n - M) = (phi.decay[j] * P.col(j).tail(n - M)).cwiseProduct(phi.decay.tail(n - M));
+    P.row(j).template head<M>() = P.col(j).template head<M>().transpose();
   }
-  P.template topLeftCorner<moving, moving>() = 0.5 * (corner + corner.transpose());
+  P.template topLeftCorner<M, M>() = 0.5 * (corner + corner.transpose());
   P.diagonal() += 0.5 * phi.noise;
 }
 
@@ -122,38 +123,42 @@ void undo_row(Adjoint<N>& a, const StateVector<N>& h, const StateVector<N>& gain
 }
 
 /// From after a transition to before it.
-template <int N>
-void undo_transition(Adjoint<N>& a, const Transition<N>& phi) {
-  const Eigen::Index n = a.lambda.size(), m = n - moving;
+template <int N, int M>
+void undo_transition(Adjoint<N>& a, const Transition<N, M>& phi) {
+  const Eigen::Index n = a.lambda.size(), m = n - M;
   const auto decay = phi.decay.tail(m);
   StateVector<N> lambda(n);
-  lambda.noalias() = phi.top.transpose().lazyProduct(a.lambda.template head<moving>());
+  lambda.noalias() = phi.top.transpose().lazyProduct(a.lambda.template head<M>());
   lambda.tail(m) += decay.cwiseProduct(a.lambda.tail(m));
   a.lambda = lambda;
 
   // Lambda' = T' L_tt T + T' L_tp D + D L_pt T + D L_pp D, with T the full rows and D the decays.
-  Eigen::Matrix<double, moving, N, Eigen::ColMajor, moving, capacity<N>> w(moving, n);
-  w.noalias() = (0.5 * a.Lambda.template topLeftCorner<moving, moving>()).eval().lazyProduct(phi.top);
-  w.rightCols(m) += a.Lambda.topRightCorner(moving, m) * decay.asDiagonal();
+  Eigen::Matrix<double, M, N, Eigen::ColMajor, M, capacity<N>> w(M, n);
+  w.noalias() = (0.5 * a.Lambda.template topLeftCorner<M, M>()).eval().lazyProduct(phi.top);
+  w.rightCols(m) += a.Lambda.topRightCorner(M, m) * decay.asDiagonal();
   StateMatrix<N> half(n, n);
   half.noalias() = phi.top.transpose().lazyProduct(w);
   StateMatrix<N> next = half + half.transpose();
   for (Eigen::Index j = 0; j < m; ++j) {
-    next.col(moving + j).tail(m) += decay[j] * decay.cwiseProduct(a.Lambda.col(moving + j).tail(m));
+    next.col(M + j).tail(m) += decay[j] * decay.cwiseProduct(a.Lambda.col(M + j).tail(m));
   }
   a.Lambda = next;
 }
 
 /// Gain A of the Rauch-Tung-Striebel smoother over one transition, `P Phi' (P predicted)^-1` (Chen 2018 eq. 13), from
 /// the filter's P before it. Returns also the predicted covariance. False when that is not positive definite.
-template <int N>
-bool rts_gain(const StateMatrix<N>& P, const Transition<N>& phi, StateMatrix<N>& gain, StateMatrix<N>& predicted);
+template <int N, int M>
+bool rts_gain(const StateMatrix<N>& P, const Transition<N, M>& phi, StateMatrix<N>& gain, StateMatrix<N>& predicted);
 
-extern template bool rts_gain<23>(const StateMatrix<23>&, const Transition<23>&, StateMatrix<23>&, StateMatrix<23>&);
-extern template bool rts_gain<25>(const StateMatrix<25>&, const Transition<25>&, StateMatrix<25>&, StateMatrix<25>&);
-extern template bool rts_gain<26>(const StateMatrix<26>&, const Transition<26>&, StateMatrix<26>&, StateMatrix<26>&);
-extern template bool rts_gain<29>(const StateMatrix<29>&, const Transition<29>&, StateMatrix<29>&, StateMatrix<29>&);
-extern template bool rts_gain<Eigen::Dynamic>(const StateMatrix<Eigen::Dynamic>&, const Transition<Eigen::Dynamic>&,
-                                              StateMatrix<Eigen::Dynamic>&, StateMatrix<Eigen::Dynamic>&);
+#define VERSINE_RTS_GAIN(N, M) \
+  template bool rts_gain<N, M>(const StateMatrix<N>&, const Transition<N, M>&, StateMatrix<N>&, StateMatrix<N>&)
+extern VERSINE_RTS_GAIN(23, moving);
+extern VERSINE_RTS_GAIN(25, moving);
+extern VERSINE_RTS_GAIN(26, moving);
+extern VERSINE_RTS_GAIN(29, moving);
+extern VERSINE_RTS_GAIN(Eigen::Dynamic, moving);
+extern VERSINE_RTS_GAIN(25, moving_with_path);
+extern VERSINE_RTS_GAIN(28, moving_with_path);
+extern VERSINE_RTS_GAIN(Eigen::Dynamic, moving_with_path);
 
 }  // namespace versine::filter

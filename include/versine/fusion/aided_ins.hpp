@@ -101,6 +101,10 @@ struct AidedInsOptions {
   /// rad; widens the constraint's gate only. Wheels on short irregularities go sideways and back: single angles are far
   /// larger than what is left of them over some metres, which is what constraint_angle stands for. They are no faults.
   double constraint_peak = 0.0;
+  /// m sqrt(m); wheels that guide a beam along a rail stray from where it points, but always come back: their middle is
+  /// never far from the sum of its way. How far, as a mean over one metre. When positive the constraint is that sum,
+  /// and constraint_sigma and _angle are only what adds up over a run; 0: the velocity alone, for wheels that slip.
+  double constraint_wander = 0.0;
 
   // --- standing still
   bool zero_velocity = true;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include "versine/filter/kernels.hpp"
 #include "versine/filter/state_blocks.hpp"
 #include "versine/fusion/aided_ins.hpp"
 #include "versine/inertial/nav_state.hpp"
@@ -13,6 +14,7 @@ namespace versine::fusion {
 struct InsLayout {
   filter::Block<3> position, velocity, attitude;
   filter::Block<1> distance;
+  filter::Block<2> path;  ///< the wheels' way to the right and down: sum of what the constraint says is nothing
   filter::Block<3> gyro_bias, accelerometer_bias, gyro_scale, accelerometer_scale;
   filter::Block<1> odometer_scale;
   filter::Block<2> mounting;  ///< pitch and yaw: small rotation of v about its right and down axes
@@ -22,6 +24,7 @@ struct InsLayout {
   filter::Block<3> landmark_position, landmark_attitude;
   std::vector<std::string> names;
 
+  [[nodiscard]] int moving() const { return path.enabled() ? filter::moving_with_path : filter::moving; }
   [[nodiscard]] int size() const { return static_cast<int>(names.size()); }
   [[nodiscard]] static InsLayout from(const AidedInsOptions& options,
                                       const Series<sensors::LandmarkSample>& landmarks = {});
@@ -31,8 +34,9 @@ struct InsLayout {
 struct InsEstimate {
   inertial::NavState nav;
   inertial::ImuCorrection imu;
-  double distance = 0.0;        ///< what the odometer should read, m
-  double odometer_scale = 0.0;  ///< the odometer shows (1 + scale) times the way
+  double distance = 0.0;                           ///< what the odometer should read, m
+  Eigen::Vector2d path = Eigen::Vector2d::Zero();  ///< of the wheels to the right and down, m
+  double odometer_scale = 0.0;                     ///< the odometer shows (1 + scale) times the way
   Eigen::Matrix3d C_vb = Eigen::Matrix3d::Identity();
   Eigen::Vector3d gnss_lever = Eigen::Vector3d::Zero(), wheel_lever = Eigen::Vector3d::Zero();
   Eigen::Vector3d gnss_bias = Eigen::Vector3d::Zero();                               ///< n-frame, m

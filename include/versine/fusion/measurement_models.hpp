@@ -21,6 +21,9 @@ namespace versine::fusion {
                                                const sensors::SpeedSample& sample, double sigma);
 /// Non-holonomic constraint: no velocity to the right and down at the wheel (Chen 2018 eq. 10 to 12).
 [[nodiscard]] filter::Linearized constraint(const InsMoment& m, const InsLayout& layout, double sigma);
+/// The constraint over a run: wheels that guide a beam along a rail are where its way has led, to the right and down.
+/// REQUIRES the block `path`.
+[[nodiscard]] filter::Linearized wheel_path(const InsMoment& m, const InsLayout& layout, double sigma);
 /// The vehicle stands: no velocity of the IMU in n on the mean of the last `seconds`, though vibration and rocking give
 /// it one at each moment. `mean`: what the estimate had. 0 s: at the moment itself. REQUIRES seconds short against the
 /// change of the attitude's error (tens of seconds).
@@ -64,5 +67,7 @@ struct DistanceRate {
   Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, filter::max_states> H;
 };
 [[nodiscard]] DistanceRate distance_rate(const InsMoment& m, const InsLayout& layout);
+/// The same, where the wheel's velocity is known already.
+[[nodiscard]] DistanceRate distance_rate(const WheelVelocity& wheel, const InsMoment& m, const InsLayout& layout);
 
 }  // namespace versine::fusion

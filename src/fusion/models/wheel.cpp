@@ -35,7 +35,10 @@ InsMoment on_wheels(const InsMoment& m) {
 }
 
 DistanceRate distance_rate(const InsMoment& m, const InsLayout& layout) {
-  const WheelVelocity w = wheel_velocity(m, layout);
+  return distance_rate(wheel_velocity(m, layout), m, layout);
+}
+
+DistanceRate distance_rate(const WheelVelocity& w, const InsMoment& m, const InsLayout& layout) {
   const double k = 1.0 + m.estimate.odometer_scale;
   DistanceRate d{k * w.v_v.x(), k * w.H.row(0)};
   d.H[layout.odometer_scale.offset] = -w.v_v.x();
@@ -58,6 +61,14 @@ filter::Linearized forward_speed(const InsMoment& m, const InsLayout& layout, co
   l.z[0] = d.rate - sample.speed;
   l.H.row(0) = d.H;
   l.R(0, 0) = sigma * sigma;
+  return l;
+}
+
+filter::Linearized wheel_path(const InsMoment& m, const InsLayout& layout, double sigma) {
+  filter::Linearized l(2, layout.size());
+  l.z = m.estimate.path;
+  l.H.middleCols<2>(layout.path.offset).setIdentity();
+  l.R.diagonal().setConstant(sigma * sigma);
   return l;
 }
 
