@@ -246,6 +246,7 @@ Expected<void> survey_once(const app::SimulateConfig& config, const std::string&
   }
   job.estimator.imu_errors = *job.imu_errors.errors();
   job.estimator.chain_rate = 1.0;
+  job.estimator.output_rate = 50.0;  // as of a survey with geometry
   job.geometry.trolley.mounting = job.estimator.mounting;
   fusion::AidedInsInput in;
   in.imu = std::move(r.imu);

@@ -252,7 +252,11 @@ void describe_output(ConfigVisitor& v, SurveyConfig& c) {
   v.value("folder", c.output.folder, {.doc = "Result folder; default: the job's name with .result, beside the job."});
   v.value("crs", c.output.crs,
           {.doc = "CRS of easting and northing; default: the UTM zone of the start.", .example = "\"EPSG:25832\""});
-  v.value("rate_hz", e.output_rate, {.doc = "Rate of the trajectory; 0: at every IMU sample.", .unit = "Hz", .min = 0});
+  v.value("rate_hz", c.output.rate,
+          {.doc = "Rate of the trajectory; 0: at every IMU sample; default: 10, for [geometry] 50, since waves of a "
+                  "metre need a point every few centimetres.",
+           .unit = "Hz",
+           .min = 0});
   v.value("csv", c.output.csv, {.doc = "Write trajectory.csv."});
   v.value("hdf5", c.output.hdf5, {.doc = "Write trajectory.h5."});
   v.value("forward", e.keep_forward, {.doc = "Keep the forward filter's trajectory, too."});
@@ -330,6 +334,8 @@ Expected<SurveyConfig> read_survey_config(const std::filesystem::path& job, std:
     return tl::unexpected(std::move(error));
   }
   config.estimator.imu_errors = *errors;
+  config.output.rate = config.output.rate.value_or(config.geometry.present ? 50.0 : 10.0);
+  config.estimator.output_rate = *config.output.rate;
   if (config.geometry.present) {
     config.geometry.trolley.mounting = config.estimator.mounting;
     if (config.geometry.crs.empty()) config.geometry.crs = config.output.crs;

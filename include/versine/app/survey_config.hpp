@@ -18,11 +18,8 @@ namespace versine::app {
 enum class SurveyMethod { aided_ins, landmark };
 
 struct SurveyConfig {
-  /// A trajectory at 10 Hz and innovations each second keep hours of recording small.
-  SurveyConfig() {
-    estimator.output_rate = 10.0;
-    estimator.innovation_interval = 1.0;
-  }
+  /// Innovations each second keep hours of recording small.
+  SurveyConfig() { estimator.innovation_interval = 1.0; }
 
   std::string job = "survey";
   std::string title;
@@ -51,6 +48,7 @@ struct SurveyConfig {
   struct Output {
     std::string folder;
     std::string crs;
+    std::optional<double> rate;  ///< Hz of the trajectory; becomes the estimator's
     bool csv = true;
     bool hdf5 = true;
     bool innovations = true;
