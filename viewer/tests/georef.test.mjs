@@ -8,7 +8,7 @@ import os from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { writeGeorefResult } from './georef_fixture.mjs';
-import { browse, open, requirePage, run, serve, source, versine } from './support.mjs';
+import { browse, open, press, requirePage, run, serve, source, versine } from './support.mjs';
 
 const folder = mkdtempSync(path.join(os.tmpdir(), 'versine-georef-'));
 const place = (...names) => path.join(folder, ...names);
@@ -33,10 +33,6 @@ after(async () => {
 });
 
 const read = (page, strip) => page.textContent(`[data-strip="${strip}"] output`);
-async function press(page, ...keys) {
-  for (const key of keys) await page.keyboard.press(key);
-  await page.waitForTimeout(120);
-}
 
 test('values at the cursor are those of the files, over time and over distance', async () => {
   const page = await open(browser, await view(writeResult('values')));

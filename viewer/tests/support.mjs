@@ -54,3 +54,11 @@ export async function open(browser, server, { width = 1366, height = 768, theme 
 
 /** Waits until the samples of the open tab are all in the page. */
 export const loaded = (page, tab = 'strips') => page.waitForSelector(`html[data-loaded="${tab}"]`, { timeout: 60000 });
+
+/** The page's own clock: a timer that a key has started, the address's above all, has run when a later one has. */
+export const settle = (page, ms = 160) => page.evaluate((wait) => new Promise((done) => setTimeout(() => requestAnimationFrame(() => done()), wait)), ms);
+
+export async function press(page, ...keys) {
+  for (const key of keys) await page.keyboard.press(key);
+  await settle(page);
+}

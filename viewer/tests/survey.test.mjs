@@ -6,7 +6,7 @@ import os from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
 import { value, sigma, writeResult } from './fixture.mjs';
-import { browse, loaded, open, requirePage, run, serve, source } from './support.mjs';
+import { browse, loaded, open, press, requirePage, run, serve, settle, source } from './support.mjs';
 
 const folder = mkdtempSync(path.join(os.tmpdir(), 'versine-view-'));
 const place = (...names) => path.join(folder, ...names);
@@ -41,10 +41,6 @@ const half = (page, strip) => page.textContent(`[data-strip="${strip}"] .strip-v
 const exact = async (page, strip) => /^(\S+) .*sigma (\S+)$/.exec(await page.getAttribute(`[data-strip="${strip}"] output`, 'title')).slice(1).map(Number);
 const km = (page) => page.textContent('.km');
 const typed = (text) => Number(text.replace('−', '-').replace(/^[■◆▲] /, ''));
-async function press(page, ...keys) {
-  for (const key of keys) await page.keyboard.press(key);
-  await page.waitForTimeout(160);
-}
 async function goTo(page, text) {
   await page.keyboard.press('g');
   await page.keyboard.type(text);
@@ -142,16 +138,16 @@ test('keys move, zoom and fit', async () => {
   const box = await (await page.$('[data-strip="level_left_d1_mm"] .u-over')).boundingBox();
   await page.mouse.move(box.x + box.width / 4, box.y + 10);
   await page.mouse.wheel(0, -400);
-  await page.waitForTimeout(160);
+  await settle(page);
   [from, to] = await range();
   assert.ok(Math.abs(from + (to - from) / 4 - 500) < 20 && to - from < 1000);
   await page.mouse.dblclick(box.x + 30, box.y + 10);
-  await page.waitForTimeout(160);
+  await settle(page);
   await page.mouse.move(box.x + 0.25 * box.width, box.y + 10);
   await page.mouse.down();
   await page.mouse.move(box.x + 0.5 * box.width, box.y + 12, { steps: 4 });
   await page.mouse.up();
-  await page.waitForTimeout(160);
+  await settle(page);
   [from, to] = await range();
   assert.ok(Math.abs(from - 500) < 5 && Math.abs(to - 1000) < 5, `${from} to ${to}`);
   assert.deepEqual(page.faults, []);
