@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <atomic>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "versine/app/geometry.hpp"
 #include "versine/app/slab_adjustment.hpp"
+#include "versine/core/parallel.hpp"
 #include "versine/core/units.hpp"
 #include "versine/io/alignment_csv.hpp"
 #include "versine/io/axis_csv.hpp"
@@ -25,27 +24,20 @@ using Writers = std::vector<std::function<Expected<void>()>>;
 
 /// Runs all writers, as many at a time as there are cores, four at most. The first error is the answer.
 Expected<void> all_of(const Writers& writers, Progress& progress) {
-  std::atomic<std::size_t> next{0}, done{0};
-  std::mutex mutex;  // of progress and answer
+  std::size_t done = 0;
+  std::mutex mutex;  // of all that follows
   Expected<void> answer;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < writers.size(); i = next++) {
-      {
-        const std::scoped_lock lock(mutex);
-        if (answer && progress.cancelled()) answer = fail({.found = "cancelled"});
-        if (!answer) return;
-      }
-      auto written = writers[i]();
+  parallel_for(writers.size(), std::min<std::size_t>(thread_count(0), 4), [&](std::size_t i) {
+    {
       const std::scoped_lock lock(mutex);
-      if (!written && answer) answer = std::move(written);
-      progress.report("writing geometry", double(++done) / double(writers.size()));
+      if (answer && progress.cancelled()) answer = fail({.found = "cancelled"});
+      if (!answer) return;
     }
-  };
-  const std::size_t threads = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, 4);
-  std::vector<std::jthread> others;
-  for (std::size_t k = 1; k < std::min(threads, writers.size()); ++k) others.emplace_back(work);
-  work();
-  others.clear();  // joins
+    auto written = writers[i]();
+    const std::scoped_lock lock(mutex);
+    if (!written && answer) answer = std::move(written);
+    progress.report("writing geometry", double(++done) / double(writers.size()));
+  });
   return answer;
 }
 

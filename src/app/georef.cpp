@@ -4,16 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "versine/app/job_run.hpp"
 #include "versine/app/progress_file.hpp"
 #include "versine/app/report.hpp"
 #include "versine/core/calendar.hpp"
+#include "versine/core/parallel.hpp"
 #include "versine/io/georef_result.hpp"
 #include "versine/io/result_folder.hpp"
 #include "versine/io/run_json.hpp"
@@ -55,28 +54,30 @@ struct Entry {
 class Solver {
  public:
   Solver(const GeorefConfig& config, const georef::Map& map)
-      : config_(config), map_(map), entries_(config.recordings.size() + config.tables.size()) {}
+      : config_(config),
+        map_(map),
+        options_(config.options),
+        entries_(config.recordings.size() + config.tables.size()) {}
 
   /// Entries on many threads, each with a projection of its own; the order of results is that of the job.
   [[nodiscard]] std::vector<Entry> run(int threads, Progress& progress) {
-    const auto cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    const auto count = std::min<std::size_t>(entries_.size(), static_cast<std::size_t>(threads > 0 ? threads : cores));
-    std::atomic<std::size_t> next{0};
+    const std::size_t cores = thread_count(threads), count = std::min(entries_.size(), cores);
+    // What recordings leave over goes to the paths of each.
+    options_.threads = cores / std::max<std::size_t>(1, count);
     std::mutex mutex;
     std::size_t done = 0;
-    const std::vector<geodesy::Projection> projections(std::max<std::size_t>(1, count), map_.network.projection);
-    const auto work = [&](const geodesy::Projection& projection) {
-      for (std::size_t i = next++; i < entries_.size(); i = next++) {
-        if (progress.cancelled()) return;
-        entries_[i] = solve(i, projection);
-        const std::scoped_lock lock(mutex);
-        progress.report("journeys", static_cast<double>(++done) / static_cast<double>(entries_.size()));
-      }
-    };
-    std::vector<std::thread> pool;
-    for (std::size_t t = 1; t < count; ++t) pool.emplace_back(work, std::cref(projections[t]));
-    work(projections[0]);
-    for (auto& t : pool) t.join();
+    std::vector<geodesy::Projection> idle(std::max<std::size_t>(1, count), map_.network.projection);
+    parallel_for(entries_.size(), count, [&](std::size_t i) {
+      if (progress.cancelled()) return;
+      std::unique_lock lock(mutex);
+      geodesy::Projection projection = std::move(idle.back());
+      idle.pop_back();
+      lock.unlock();
+      entries_[i] = solve(i, projection);
+      lock.lock();
+      idle.push_back(std::move(projection));
+      progress.report("journeys", static_cast<double>(++done) / static_cast<double>(entries_.size()));
+    });
     return std::move(entries_);
   }
 
@@ -86,8 +87,8 @@ class Solver {
     const auto add = [&](georef::Recording&& r) {
       std::string name = r.name;
       if (config_.run_online) entry.again.push_back(r);
-      entry.outcomes.push_back({std::move(name), georef::georeference(map_, std::move(r), config_.options,
-                                                                      config_.constraints, &projection)});
+      entry.outcomes.push_back(
+          {std::move(name), georef::georeference(map_, std::move(r), options_, config_.constraints, &projection)});
     };
     if (i >= config_.recordings.size()) {
       const auto& c = config_.tables[i - config_.recordings.size()];
@@ -116,6 +117,7 @@ class Solver {
 
   const GeorefConfig& config_;
   const georef::Map& map_;
+  georef::Options options_;
   std::vector<Entry> entries_;
 };
 
@@ -173,14 +175,23 @@ Expected<void> add_inputs(io::Run& run, const GeorefConfig& c, const fs::path& j
 /// Everything of the result folder but run.json.
 Expected<void> write_results(const GeorefConfig& c, const fs::path& folder, const georef::Map& map,
                              const std::vector<GeorefOutcome>& outcomes, const std::vector<OnlineReplay>& online,
-                             Progress& progress) {
+                             int threads, Progress& progress) {
   std::vector<const georef::RecordingResult*> results;
   for (const auto& o : outcomes) results.push_back(o.result ? &*o.result : nullptr);
-  auto done = write_georef_tables(folder, map, outcomes, c.options, c.csv_interval);
-  if (done) done = write_georef_index(folder, map, outcomes);
-  if (done && c.hdf5) done = io::write_georef_hdf5(folder / "georef.h5", map, results);
-  if (done && c.gpkg) done = io::write_georef_gpkg(folder / "result.gpkg", map, results, c.csv_interval);
-  if (done && c.run_online) done = write_online_csv(folder, map, online);
+  // The map's projection is for one thread at a time; HDF5 does not ask it.
+  const auto with_projection = [&] {
+    auto done = write_georef_tables(folder, map, outcomes, c.options, c.csv_interval);
+    if (done) done = write_georef_index(folder, map, outcomes);
+    if (done && c.gpkg) done = io::write_georef_gpkg(folder / "result.gpkg", map, results, c.csv_interval);
+    if (done && c.run_online) done = write_online_csv(folder, map, online);
+    return done;
+  };
+  Expected<void> done, hdf5;
+  parallel_for(2, thread_count(threads), [&](std::size_t i) {
+    if (i == 0) done = with_projection();
+    if (i == 1 && c.hdf5) hdf5 = io::write_georef_hdf5(folder / "georef.h5", map, results);
+  });
+  if (done) done = hdf5;
   if (done) done = stamp_monitoring(folder, map, outcomes, c.monitoring, progress);
   return done;
 }
@@ -240,7 +251,7 @@ Expected<GeorefRun> run_georef(const fs::path& job, std::span<const std::string>
   }
   if (failed == outcomes.size()) return tl::unexpected(out.faults.front());
   visible.report("writing", 0.0);
-  if (auto done = write_results(*config, folder->folder(), **map, outcomes, replays, visible); !done)
+  if (auto done = write_results(*config, folder->folder(), **map, outcomes, replays, threads, visible); !done)
     return tl::unexpected(done.error());
   if (auto done = add_inputs(run, *config, job); !done) return tl::unexpected(done.error());
   stage("write");

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "posterior.hpp"
+#include "versine/core/parallel.hpp"
 
 namespace versine::georef {
 
@@ -53,22 +54,20 @@ JourneyResult solve(const Map& map, const Epochs& epochs, const JourneySpan& spa
   j.ends_standing = span.ends_standing;
   const double least = std::log(options.smallest_probability);
   std::vector<Filtered> filtered(hypotheses.size());
-  double best = -INFINITY;
-  for (std::size_t i = 0; i < hypotheses.size(); ++i) {
-    PathSolution p;
+  j.paths.resize(hypotheses.size());
+  parallel_for(hypotheses.size(), options.threads, [&](std::size_t i) {
+    PathSolution& p = j.paths[i];
     p.coordinates = network::PathCoordinates(map.network, std::move(hypotheses[i].path));
-    auto f = filter_on_path(p.coordinates, epochs, options);
-    p.evidence = f.evidence;
+    filtered[i] = filter_on_path(p.coordinates, epochs, options);
+    p.evidence = filtered[i].evidence;
     p.evidence.route = hypotheses[i].prior - hypotheses[i].astray;
-    best = std::max(best, p.evidence.total());
-    if (!(p.evidence.total() < best + least)) filtered[i] = std::move(f);
-    j.paths.push_back(std::move(p));
-  }
-  for (std::size_t i = 0; i < filtered.size(); ++i) {
-    auto& p = j.paths[i];
-    if (!(p.evidence.total() < best + least)) solve_on_path(map, epochs, options, filtered[i], p);
+  });
+  double best = -INFINITY;
+  for (const auto& p : j.paths) best = std::max(best, p.evidence.total());
+  parallel_for(filtered.size(), options.threads, [&](std::size_t i) {
+    if (!(j.paths[i].evidence.total() < best + least)) solve_on_path(map, epochs, options, filtered[i], j.paths[i]);
     filtered[i] = {};
-  }
+  });
   set_posterior(j.paths);
   std::erase_if(j.paths, [&](const auto& p) { return p.probability < options.smallest_probability; });
   double sum = 0.0;

@@ -70,6 +70,7 @@ struct Options {
   double smallest_probability = 1e-3;           ///< of a path that is smoothed and reported
   std::optional<Eigen::Vector3d> forward_axis;  ///< of the vehicle in the IMU's axes; none: found from the movement
   double turn_rate_sigma = 0.01;  ///< rad, of a change of azimuth: map and gyro together; used with an IMU that turns
+  std::size_t threads = 1;        ///< for the paths of a journey; the result does not depend on it
 };
 
 /// What a reviewer decided: within [from, to] the vehicle was on these tracks only (or on none of them).
