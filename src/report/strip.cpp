@@ -12,7 +12,8 @@ namespace versine::report {
 
 namespace {
 
-constexpr double bin = 0.35, band_bin = 2.0;  // mm
+constexpr double bin = 0.35;   // mm, of a curve and its band
+constexpr double least = 0.1;  // mm: a narrower band lies under its curve
 constexpr std::uint32_t grid = 0xe3e7eb, muted = 0x57606a, ink = 0x1b1f24;
 
 struct Scale {
@@ -57,6 +58,7 @@ std::vector<Point> thinned(const Window& w, const StripAxis& axis, std::span<con
   return out;
 }
 
+/// In the bins of the curve: a wider bin would show the signal's own range as if it were uncertainty.
 void draw_band(Drawing& d, const Window& w, const StripAxis& axis, const StripCurve& c) {
   std::vector<Point> upper, lower;
   const auto flush = [&] {
@@ -70,13 +72,13 @@ void draw_band(Drawing& d, const Window& w, const StripAxis& axis, const StripCu
   long open = -1;
   for (std::size_t i = w.first; i < w.last; ++i) {
     const double half = 1.96 * c.sigma[i];
-    if (!std::isfinite(c.value[i] + half)) {
+    if (!(std::isfinite(c.value[i] + half) && half * std::abs(w.y.per) > least)) {
       flush();
       open = -1;
       continue;
     }
     const double x = w.x(axis.x[i]), top = w.y(c.value[i] + half), bottom = w.y(c.value[i] - half);
-    const long now = static_cast<long>((x - w.plot.x) / band_bin);
+    const long now = static_cast<long>((x - w.plot.x) / bin);
     if (now != open) {
       upper.push_back({x, top});
       lower.push_back({x, bottom});
