@@ -23,7 +23,7 @@ struct JobKind {
   std::string_view starter = {};
 };
 
-/// All kinds. A new kind is one line in src/app/job_kinds.cpp.
+/// All kinds. A new kind is one line in src/app/job/job_kinds.cpp.
 [[nodiscard]] std::span<const JobKind> job_kinds();
 [[nodiscard]] const JobKind* find_job_kind(std::string_view name);
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "text_table.hpp"
+#include "job/text_table.hpp"
 #include "versine/core/units.hpp"
 #include "view_map.hpp"
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "text_table.hpp"
+#include "job/text_table.hpp"
 #include "versine/report/facts.hpp"
 #include "versine/report/georef_report.hpp"
 #include "versine/report/plan_report.hpp"

@@ -3,6 +3,8 @@
 
 namespace versine::app {
 
-std::string version() { return VERSINE_VERSION; }
+std::string version() {
+  return VERSINE_VERSION;
+}
 
 }  // namespace versine::app

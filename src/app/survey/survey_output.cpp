@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "network_report.hpp"
+#include "positioning/network_report.hpp"
 #include "versine/app/landmark_residuals.hpp"
 #include "versine/app/report.hpp"
 #include "versine/core/units.hpp"

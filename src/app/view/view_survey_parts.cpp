@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "text_table.hpp"
+#include "job/text_table.hpp"
 #include "versine/core/units.hpp"
 #include "versine/geodesy/projection.hpp"
 #include "versine/io/input_stream.hpp"

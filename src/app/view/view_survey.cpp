@@ -8,7 +8,7 @@
 #include <limits>
 #include <mutex>
 
-#include "text_table.hpp"
+#include "job/text_table.hpp"
 #include "versine/core/calendar.hpp"
 #include "versine/io/input_stream.hpp"
 #include "view_difference.hpp"
