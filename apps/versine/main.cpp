@@ -4,12 +4,20 @@
 #include <string_view>
 
 #include "command.hpp"
+#include "versine/app/job_kinds.hpp"
 #include "versine/app/version.hpp"
 
 namespace versine::cli {
 
 void add_job_options(CLI::App& command, JobOptions& options) {
-  command.add_option("job", options.job, "Job file (TOML)")->required();
+  // What else is wrong with a job is for its own command to tell.
+  const auto of_this_kind = [kind = command.get_name()](const std::string& file) -> std::string {
+    const auto found = app::job_kind_of(file);
+    if (!found || (*found)->name == kind) return {};
+    const std::string name((*found)->name);
+    return file + " is a " + name + " job; run it with: versine " + name + " " + file;
+  };
+  command.add_option("job", options.job, "Job file (TOML)")->required()->check(of_this_kind);
   command.add_option("-o,--output", options.output, "Result folder (default: beside the job, named after it)");
   command.add_option("--threads", options.threads, "Threads; 0 means all cores")->check(CLI::Range(0, 1024));
   command.add_flag("--json", options.json, "Print a machine-readable summary");

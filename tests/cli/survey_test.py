@@ -215,6 +215,12 @@ class Documentation(Case):
             self.assertEqual((checked.returncode, run.returncode), (2, 2), kind)
             self.assertEqual(checked.stderr, run.stderr)  # what would be found later is found by 'check'
 
+    def test_a_job_of_another_kind_is_told_which_command_runs_it(self):
+        (self.folder / "line.toml").write_text(self.good("init", "simulate"))
+        done = self.versine("georef", "line.toml")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("versine simulate line.toml", done.stderr)
+
     def test_template_of_a_simulation_runs_and_its_job_too(self):
         (self.folder / "line.toml").write_text(self.good("init", "simulate"))
         self.assertIn("390", self.good("simulate", "line.toml"))
