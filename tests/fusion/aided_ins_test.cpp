@@ -91,16 +91,27 @@ TEST(AidedIns, SmoothedVariancesAreNeverAboveTheFilters) {
   }
 }
 
-TEST(AidedIns, OutageIsBridgedByOdometerAndConstraint) {
+Scenario with_wheels() {
   Scenario s;
   s.wheel_lever.setZero();
   s.duration = 160.0;
+  return s;
+}
+
+/// A minute without fixes.
+Simulated with_outage(const Scenario& s) {
   Simulated run = test::make(s, 9);
   run.options.constraint = true;
   std::erase_if(run.input.gnss.samples, [&](const auto& g) {
     const double t = (g.time - s.motion.epoch).seconds();
     return t > 80 && t < 140;
   });
+  return run;
+}
+
+TEST(AidedIns, OutageIsBridgedByOdometerAndConstraint) {
+  const Scenario s = with_wheels();
+  Simulated run = with_outage(s);
   const AidedInsResult r = solve(run);
   double with = 0, without = 0;
   EXPECT_LT(worst_ratio(s, run, r, &with), 4.5);
@@ -116,15 +127,8 @@ TEST(AidedIns, OutageIsBridgedByOdometerAndConstraint) {
 
 TEST(AidedIns, WheelsThatNeverStrayFarHoldTheWay) {
   // The sum of their way tells more than velocities whose errors would add up.
-  Scenario s;
-  s.wheel_lever.setZero();
-  s.duration = 160.0;
-  Simulated run = test::make(s, 9);
-  run.options.constraint = true;
-  std::erase_if(run.input.gnss.samples, [&](const auto& g) {
-    const double t = (g.time - s.motion.epoch).seconds();
-    return t > 80 && t < 140;
-  });
+  const Scenario s = with_wheels();
+  Simulated run = with_outage(s);
   double velocity = 0.0, path = 0.0;
   worst_ratio(s, run, solve(run), &velocity);
   run.options.constraint_angle = 1e-6;

@@ -10,14 +10,16 @@
 namespace versine::network {
 namespace {
 
+/// Places count from the middle of the UTM zone.
+void add_line(NetworkSource& s, const char* id, std::vector<Eigen::Vector2d> places) {
+  for (auto& p : places) p += Eigen::Vector2d(500000.0, 5500000.0);
+  s.tracks.push_back({id, std::move(places), 0, {}, {}, {}});
+}
+
 TEST(Check, FindsNearMissesIsolatedPiecesAndKinks) {
   NetworkSource s;
   s.crs = "EPSG:32632";
-  const Eigen::Vector2d o(500000.0, 5500000.0);
-  const auto line = [&](const char* id, std::vector<Eigen::Vector2d> p) {
-    for (auto& q : p) q += o;
-    s.tracks.push_back({id, p, 0, {}, {}, {}});
-  };
+  const auto line = [&](const char* id, std::vector<Eigen::Vector2d> p) { add_line(s, id, std::move(p)); };
   line("stem", {{0, 0}, {100, 0}});
   line("main", {{100.3, 0}, {200, 0}});
   line("leg", {{100, 0}, {200, 11}});
@@ -40,11 +42,7 @@ TEST(Check, FindsNearMissesIsolatedPiecesAndKinks) {
 TEST(Check, FindsTracksDrawnTwice) {
   NetworkSource s;
   s.crs = "EPSG:32632";
-  const Eigen::Vector2d o(500000.0, 5500000.0);
-  const auto line = [&](const char* id, std::vector<Eigen::Vector2d> p) {
-    for (auto& q : p) q += o;
-    s.tracks.push_back({id, p, 0, {}, {}, {}});
-  };
+  const auto line = [&](const char* id, std::vector<Eigen::Vector2d> p) { add_line(s, id, std::move(p)); };
   line("a", {{0, 0}, {300, 0}, {600, 20}});
   line("b", {{0, 4}, {300, 4}, {600, 24}});
   line("a again", {{600, 20.2}, {300, 0.2}, {0, 0.2}});
