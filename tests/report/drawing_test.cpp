@@ -94,6 +94,40 @@ TEST(Strip, ASingleExtremeSampleIsSeenAfterThinning) {
   EXPECT_THAT(svg, HasSubstr("min -7.0"));
 }
 
+/// Height of the tallest filled area of a rough curve with this sigma, mm of paper; 0: none.
+double band_height(double sigma) {
+  std::vector<double> x, y;
+  for (int i = 0; i < 500; ++i) {
+    x.push_back(1.0 * i);
+    y.push_back(i % 2 == 0 ? 1.0 : -1.0);
+  }
+  const std::vector<double> sigmas(y.size(), sigma);
+  Strip s{.name = "gauge", .detail = "mm"};
+  s.curves.push_back({y, sigmas});
+  s.low = -10.0, s.high = 10.0;
+  StripAxis axis{.x = x, .from = 0.0, .to = x.back(), .span = x.back()};
+  axis.posted = [](double v) { return v; };
+  axis.label = [](double v) { return std::to_string(v); };
+  Drawing d;
+  draw_strips(d, {0, 0, 559, 100}, std::span(&s, 1), axis);
+  double tallest = 0.0;
+  for (const Item& item : d.items) {
+    const auto* p = std::get_if<Path>(&item);
+    if (p == nullptr || !p->fill || p->points.size() < 100) continue;
+    // Upper edge forward, lower edge backward: the same place stands as far from both ends.
+    for (std::size_t i = 0; i < p->points.size() / 2; ++i) {
+      tallest = std::max(tallest, p->points[p->points.size() - 1 - i].y - p->points[i].y);
+    }
+  }
+  return tallest;
+}
+
+TEST(Strip, BandIsTheUncertaintyAndNotTheRangeOfTheCurve) {
+  const double per_mm = (100.0 - 5.5 - 1.6) / 20.0;
+  EXPECT_NEAR(band_height(1.0), 2 * 1.96 * per_mm, 0.02);  // one value a millimetre of paper
+  EXPECT_EQ(band_height(0.005), 0.0);                      // thinner than the curve
+}
+
 TEST(Strip, NumbersHaveNoNegativeZero) {
   EXPECT_EQ(decimal(-0.04, 1), "0.0");
   EXPECT_EQ(decimal(-0.06, 1), "-0.1");
