@@ -9,7 +9,7 @@ VERSINE_DATA ?= ../shared/data
 override VERSINE_DATA := $(abspath $(VERSINE_DATA))
 export VERSINE_DATA
 
-.PHONY: all setup build test sanitize demo screenshots report-images accuracy figures benchmarks format clean accuracy-positioning accuracy-georef accuracy-track
+.PHONY: all setup build test headers sanitize demo screenshots report-images accuracy figures benchmarks format clean accuracy-positioning accuracy-georef accuracy-track
 all: build
 
 setup:
@@ -23,6 +23,10 @@ build: setup $(BUILD)/build.ninja
 
 test: build
 	ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+
+# Each public header compiles by itself, without precompiled headers.
+headers: setup $(BUILD)/build.ninja
+	cmake --build $(BUILD) -j $(JOBS) --target versine_headers
 
 # Text readers and integrity checks under the address and undefined-behaviour sanitizers.
 sanitize: setup

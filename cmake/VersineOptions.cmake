@@ -39,10 +39,13 @@ if(VERSINE_HOST_HAS_AVX2)
 endif()
 set(VERSINE_ARCH "${VERSINE_ARCH_DEFAULT}" CACHE STRING "Value of -march; empty for the compiler's own default")
 
+# Tests spend little time in their own code, and much in being compiled.
+set(VERSINE_TEST_OPTIMISATION $<$<CONFIG:Release>:-O1>)
+
 add_library(versine_flags INTERFACE)
 target_compile_options(versine_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual -Wno-psabi -Wno-missing-field-initializers
-  -ffp-contract=fast
+  -ffp-contract=fast -pthread
   $<$<BOOL:${VERSINE_WERROR}>:-Werror> $<$<BOOL:${VERSINE_ARCH}>:-march=${VERSINE_ARCH}>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 reports these inside Eigen and std::string where there is nothing (PR105329, PR105562).

@@ -10,7 +10,7 @@ namespace versine::batch {
 using Json = nlohmann::ordered_json;
 
 namespace {
-constexpr const char* format = "versine journeys 1";
+constexpr const char* journeys_format = "versine journeys 1";
 
 struct Cubic {
   const Knot &a, &b;
@@ -105,8 +105,8 @@ std::string to_text(const Summary& s) {
                         {"expected", e.expected},
                         {"advice", e.advice}});
   }
-  return Json{{"format", format}, {"journeys", journeys}, {"failures", failures}}.dump(-1, ' ', false,
-                                                                                       Json::error_handler_t::replace) +
+  return Json{{"format", journeys_format}, {"journeys", journeys}, {"failures", failures}}.dump(
+             -1, ' ', false, Json::error_handler_t::replace) +
          "\n";
 }
 

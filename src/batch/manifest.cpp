@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 namespace {
-constexpr const char* format = "versine manifest 1";
+constexpr const char* manifest_format = "versine manifest 1";
 
 std::string units_text(const Manifest& m) {
   std::string text;
@@ -31,9 +31,9 @@ std::string units_text(const Manifest& m) {
 }
 
 std::string head_text(const Manifest& m, const std::string& units) {
-  return Json{{"format", format},       {"engine", m.engine},      {"stage", m.stage},
-              {"config", m.job.config}, {"job_file", m.job.path},  {"job", m.job.text},
-              {"shards", m.shards},     {"units", m.units.size()}, {"units_sha256", io::sha256(units)}}
+  return Json{{"format", manifest_format}, {"engine", m.engine},      {"stage", m.stage},
+              {"config", m.job.config},    {"job_file", m.job.path},  {"job", m.job.text},
+              {"shards", m.shards},        {"units", m.units.size()}, {"units_sha256", io::sha256(units)}}
              .dump(1) +
          "\n";
 }

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 namespace {
-constexpr const char* format = "versine receipt 1";
+constexpr const char* receipt_format = "versine receipt 1";
 
 Json reason_json(const Error& e) {
   return {{"file", e.file},   {"line", e.line},         {"field", e.field},
@@ -39,7 +39,8 @@ Failure differs(const fs::path& path) {
 std::string to_text(const Receipt& r) {
   Json outputs = Json::array();
   for (const Output& o : r.outputs) outputs.push_back({{"name", o.name}, {"sha256", o.sha256}, {"bytes", o.bytes}});
-  Json j{{"format", format}, {"unit", r.unit}, {"state", r.rejection ? "rejected" : "done"}, {"outputs", outputs}};
+  Json j{
+      {"format", receipt_format}, {"unit", r.unit}, {"state", r.rejection ? "rejected" : "done"}, {"outputs", outputs}};
   if (r.rejection) j["reason"] = reason_json(*r.rejection);
   const auto dump = [&] { return j.dump(1, ' ', false, Json::error_handler_t::replace); };
   const std::string check = io::sha256(dump());

@@ -5,28 +5,41 @@
 
 namespace versine::filter {
 
-template <int N, int M>
-bool rts_gain(const StateMatrix<N>& P, const Transition<N, M>& phi, StateMatrix<N>& gain, StateMatrix<N>& predicted) {
-  const Eigen::Index n = P.rows();
-  predicted = P;
-  predict<N>(predicted, phi);
-  // Phi P, then solve: A' = predicted^-1 (Phi P). Scaling to unit diagonal first: metres and radians per second differ
-  // by ten orders of magnitude.
-  StateMatrix<N> phi_p(n, n);
-  phi_p.template topRows<M>().noalias() = phi.top.lazyProduct(P);
-  phi_p.bottomRows(n - M) = phi.decay.tail(n - M).asDiagonal() * P.bottomRows(n - M);
-  if (!(predicted.diagonal().minCoeff() > 0.0)) return false;
-  const StateVector<N> scale = predicted.diagonal().cwiseSqrt().cwiseInverse();
-  StateMatrix<N> scaled = scale.asDiagonal() * predicted * scale.asDiagonal();
-  Eigen::LLT<StateMatrix<N>> llt(scaled);
+namespace {
+
+/// `right` becomes A^-1 right; false when A is not positive definite. Of any size, so that it is compiled once: Eigen
+/// solves systems of 25 rows no faster when it knows their number.
+bool solve_positive(const Eigen::Ref<const Eigen::MatrixXd>& A, Eigen::Ref<Eigen::MatrixXd> right) {
+  // Scaled to unit diagonal first: metres and radians per second differ by ten orders of magnitude.
+  using Matrix = StateMatrix<Eigen::Dynamic>;
+  const StateVector<Eigen::Dynamic> scale = A.diagonal().cwiseSqrt().cwiseInverse();
+  Matrix scaled = scale.asDiagonal() * A * scale.asDiagonal();
+  Eigen::LLT<Matrix> llt(scaled);
   if (llt.info() != Eigen::Success) {
     scaled.diagonal().array() += 1e-6;  // records are kept in float: their rounding may exceed the smallest eigenvalue
     llt.compute(scaled);
     if (llt.info() != Eigen::Success) return false;
   }
-  const StateMatrix<N> right = scale.asDiagonal() * phi_p;
-  const StateMatrix<N> solved = scale.asDiagonal() * llt.solve(right);
-  gain = solved.transpose();
+  right = scale.asDiagonal() * right;
+  llt.solveInPlace(right);
+  right = scale.asDiagonal() * right;
+  return true;
+}
+
+}  // namespace
+
+template <int N, int M>
+bool rts_gain(const StateMatrix<N>& P, const Transition<N, M>& phi, StateMatrix<N>& gain, StateMatrix<N>& predicted) {
+  const Eigen::Index n = P.rows();
+  predicted = P;
+  predict<N>(predicted, phi);
+  // Phi P, then solve: A' = predicted^-1 (Phi P).
+  StateMatrix<N> phi_p(n, n);
+  phi_p.template topRows<M>().noalias() = phi.top.lazyProduct(P);
+  phi_p.bottomRows(n - M) = phi.decay.tail(n - M).asDiagonal() * P.bottomRows(n - M);
+  if (!(predicted.diagonal().minCoeff() > 0.0)) return false;
+  if (!solve_positive(predicted, phi_p)) return false;
+  gain = phi_p.transpose();
   return true;
 }
 

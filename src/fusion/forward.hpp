@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <Eigen/Cholesky>
-
 #include "aids.hpp"
 #include "imu_walk.hpp"
 #include "segment_start.hpp"
@@ -302,13 +300,7 @@ class Forward {
     if (verdict == Judge::Verdict::doubt_filter) lose_trust(sensor, std::min(1e8, l.z.squaredNorm()));
     if (verdict != Judge::Verdict::use) return false;
 
-    // Uncorrelated rows of unit variance.
-    const Eigen::LLT<
-        Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, filter::max_rows, filter::max_rows>>
-        llt(l.R);
-    if (llt.info() != Eigen::Success) return false;
-    llt.matrixL().solveInPlace(l.z);
-    llt.matrixL().solveInPlace(l.H);
+    if (!filter::whiten(l)) return false;
     Vector x = Vector::Zero(l_.size());
     for (int i = 0; i < m; ++i) {
       const Vector h = l.H.row(i).transpose();

@@ -4,13 +4,11 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "versine/core/numbers.hpp"
+
 namespace versine::fusion::landmark {
 
 namespace {
-
-constexpr double square(double x) {
-  return x * x;
-}
 
 /// Residuals of landmarks whose redundancy is below this say more about rounding than about the landmark.
 constexpr double least_redundancy = 1e-3;

@@ -3,13 +3,11 @@
 
 #include <cmath>
 
+#include "versine/core/numbers.hpp"
+
 namespace versine::fusion::landmark {
 
 namespace {
-
-constexpr double square(double x) {
-  return x * x;
-}
 
 /// Covariance that white noise of density `q` on a state collects over `dt` in that state and in the positions that
 /// grow with it: `arm` is what a unit of the state moves them by over the whole step, at a constant rate.

@@ -3,15 +3,10 @@
 
 #include <cmath>
 
+#include "versine/core/numbers.hpp"
 #include "versine/geodesy/ellipsoid.hpp"
 
 namespace versine::fusion {
-
-namespace {
-constexpr double square(double x) {
-  return x * x;
-}
-}  // namespace
 
 double cross_variance(const CrossErrors& e, double v, double T, double t) {
   const double p = square(e.start_position), s = square(e.landmark), q = square(e.random_walk);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "versine/core/numbers.hpp"
 #include "versine/geodesy/attitude.hpp"
 #include "versine/inertial/error_dynamics.hpp"
 
@@ -17,10 +18,6 @@ constexpr int position = 0, velocity = 3, attitude = 6, gyro_bias = 9, accelerom
               mounting_pitch = 16, mounting_heading = 17, states = 18;
 using Matrix = Eigen::Matrix<double, states, states>;
 using Step = filter::LinearStep<states, 3>;
-
-constexpr double square(double x) {
-  return x * x;
-}
 
 inertial::NavState state_of(const PlanCase& plan) {
   inertial::NavState s;

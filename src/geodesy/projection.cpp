@@ -11,17 +11,15 @@
 
 namespace versine::geodesy {
 
-namespace {
-struct Context {
-  PJ_CONTEXT* handle = proj_context_create();
-  Context() { proj_log_level(handle, PJ_LOG_NONE); }
-  ~Context() { proj_context_destroy(handle); }
-  Context(const Context&) = delete;
-  Context& operator=(const Context&) = delete;
-};
-}  // namespace
-
 struct Projection::Impl {
+  struct Context {
+    PJ_CONTEXT* handle = proj_context_create();
+    Context() { proj_log_level(handle, PJ_LOG_NONE); }
+    ~Context() { proj_context_destroy(handle); }
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+  };
+
   Context context;
   std::string definition;
   PJ* to_map = nullptr;  // WGS84 longitude, latitude in degrees -> easting, northing
@@ -69,9 +67,10 @@ Expected<Projection> Projection::create(const std::string& definition) {
 
 Expected<Projection> Projection::transverse_mercator(double central_meridian, double scale, double false_easting,
                                                      double latitude_of_origin) {
-  return create(fmt::format("+proj=tmerc +lat_0={:.15g} +lon_0={:.15g} +k={:.15g} +x_0={:.15g} +y_0=0 +ellps=WGS84 "
-                            "+units=m +no_defs",
-                            latitude_of_origin / units::deg, central_meridian / units::deg, scale, false_easting));
+  return create(
+      fmt::format("+proj=tmerc +lat_0={:.15g} +lon_0={:.15g} +k={:.15g} +x_0={:.15g} +y_0=0 +ellps=WGS84 "
+                  "+units=m +no_defs",
+                  latitude_of_origin / units::deg, central_meridian / units::deg, scale, false_easting));
 }
 
 Expected<Projection> Projection::utm(const Geodetic& place) {
@@ -119,7 +118,9 @@ Projection::Distortion Projection::distortion(const Geodetic& g) const {
   return {f.meridional_scale, f.meridian_convergence};
 }
 
-const std::string& Projection::definition() const { return impl_->definition; }
+const std::string& Projection::definition() const {
+  return impl_->definition;
+}
 
 std::string Projection::wkt() const {
   const char* text = proj_as_wkt(impl_->context.handle, impl_->crs, PJ_WKT2_2019, nullptr);

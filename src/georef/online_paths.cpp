@@ -10,12 +10,12 @@
 namespace versine::georef {
 
 namespace {
-constexpr std::uint32_t none = 0xFFFFFFFFU;
+constexpr std::uint32_t no_parent = 0xFFFFFFFFU;
 
 struct Label {
   network::OrientedTrack track;
   double length = 0.0, prior = 0.0;  // to the end of `track`
-  std::uint32_t parent = none;
+  std::uint32_t parent = no_parent;
 };
 
 double leg_prior(const std::span<const network::OrientedGraph::Arc> arcs, bool diverging, double probability) {
@@ -25,7 +25,7 @@ double leg_prior(const std::span<const network::OrientedGraph::Arc> arcs, bool d
 
 WayOn collect(const std::vector<Label>& labels, std::uint32_t id) {
   WayOn way{{}, labels[id].prior};
-  for (std::uint32_t l = id; l != none; l = labels[l].parent) way.tracks.push_back(labels[l].track);
+  for (std::uint32_t l = id; l != no_parent; l = labels[l].parent) way.tracks.push_back(labels[l].track);
   std::reverse(way.tracks.begin(), way.tracks.end());
   return way;
 }
@@ -44,7 +44,7 @@ void explore(const Map& map, network::OrientedTrack from, double diverging, std:
       queue.push(static_cast<std::uint32_t>(labels.size() - 1));
     }
   };
-  leave(from, 0.0, 0.0, none);
+  leave(from, 0.0, 0.0, no_parent);
   while (!queue.empty() && labels.size() < 200'000) {
     const std::uint32_t id = queue.top();
     queue.pop();

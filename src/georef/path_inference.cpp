@@ -40,7 +40,7 @@ struct Candidate {
 };
 
 /// A way from one candidate's track into another's, as found by the search.
-struct Label {
+struct Leg {
   double length = 0.0;  // from the source candidate to the entry of `track`
   double prior = 0.0;
   OrientedTrack track;
@@ -242,7 +242,7 @@ class Search {
     while (!queue.empty()) {
       const std::uint32_t id = queue.top();
       queue.pop();
-      const Label label = labels_[id];
+      const Leg label = labels_[id];
       if (++visits[label.track.state()] > most) continue;
       if (const auto hit = at.find(label.track.state()); hit != at.end()) {
         const double route = label.length + found[hit->second].distance;
@@ -297,7 +297,7 @@ class Search {
   std::vector<Rule> rules_;
   double log_straight_ = 0.0, log_diverging_ = 0.0;
   std::vector<Node> nodes_;
-  std::vector<Label> labels_;
+  std::vector<Leg> labels_;
   std::vector<std::uint32_t> chain_;
 };
 

@@ -2,14 +2,12 @@
 #include "versine/io/alignment_csv.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include "text_output.hpp"
+#include "versine/core/numbers.hpp"
 
 namespace versine::io {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 double radius(double curvature) {
   return curvature == 0.0 ? nan : 1.0 / curvature;

@@ -2,14 +2,12 @@
 #include "versine/io/axis_csv.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include "text_output.hpp"
+#include "versine/core/numbers.hpp"
 
 namespace versine::io {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// A number and its standard deviation; both empty where there is none.
 void pair(TextOutput& out, double value, double sigma, int decimals) {

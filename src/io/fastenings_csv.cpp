@@ -8,14 +8,14 @@
 namespace versine::io {
 namespace {
 
-struct Part {
+struct Side {
   const char *direction, *rail;
   const track::FasteningPlan* plan;
 };
 
-std::array<Part, 4> parts_of(const FasteningPlans& p) {
-  return {Part{"lateral", "left", &p.lateral[0]}, Part{"lateral", "right", &p.lateral[1]},
-          Part{"vertical", "left", &p.vertical[0]}, Part{"vertical", "right", &p.vertical[1]}};
+std::array<Side, 4> parts_of(const FasteningPlans& p) {
+  return {Side{"lateral", "left", &p.lateral[0]}, Side{"lateral", "right", &p.lateral[1]},
+          Side{"vertical", "left", &p.vertical[0]}, Side{"vertical", "right", &p.vertical[1]}};
 }
 
 }  // namespace
@@ -25,14 +25,14 @@ Expected<void> write_fastenings_csv(const std::filesystem::path& path, const Fas
   out.text(
       "# lateral: positive right in the direction of increasing mileage; vertical: positive up\n# measured and left: "
       "deviation from design; move: of the rail at this fastening\nfastening,distance_m,mileage_m");
-  for (const Part& part : parts_of(p)) {
+  for (const Side& part : parts_of(p)) {
     if (part.plan->steps.empty()) continue;
     for (const char* what : {"measured", "move", "left"}) out.print(",{}_{}_{}_mm", part.direction, part.rail, what);
   }
   out.end_line();
   for (std::size_t i = 0; i < p.at.size(); ++i) {
     out.print("{},{:.3f},{:.3f}", i + 1, p.at.mileage[i], p.at.posted_at(p.at.mileage[i]));
-    for (const Part& part : parts_of(p)) {
+    for (const Side& part : parts_of(p)) {
       if (part.plan->steps.empty()) continue;
       const double before = p.at.at(std::string("deviation_") + part.direction + "_" + part.rail).value[i];
       const double after = part.plan->after[i];
@@ -50,7 +50,7 @@ Expected<void> write_parts_csv(const std::filesystem::path& path, const Fastenin
                                double vertical_step) {
   TextOutput out(path);
   out.text("direction,rail,move_mm,fastenings\n");
-  for (const Part& part : parts_of(p)) {
+  for (const Side& part : parts_of(p)) {
     const double step = part.direction[0] == 'l' ? lateral_step : vertical_step;
     std::map<int, std::size_t> count;
     for (const int s : part.plan->steps) ++count[s];

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <charconv>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <string_view>
 
-/// Small helpers of the fixed-layout field formats.
+/// Fields of text formats.
 namespace versine::io {
 
 inline std::string_view trimmed(std::string_view s) {
@@ -14,13 +15,19 @@ inline std::string_view trimmed(std::string_view s) {
   return s.substr(a, s.find_last_not_of(" \t\r\n") - a + 1);
 }
 
+/// A field that is one finite number and nothing else.
+inline std::optional<double> number(std::string_view field) {
+  double x = 0.0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), x);
+  if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(x)) return std::nullopt;
+  return x;
+}
+
+/// A number with a plus sign and blanks around it, as instruments write it.
 inline std::optional<double> to_number(std::string_view s) {
   s = trimmed(s);
   if (!s.empty() && s.front() == '+') s.remove_prefix(1);
-  double v = 0.0;
-  const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), v);
-  if (s.empty() || error != std::errc() || end != s.data() + s.size()) return {};
-  return v;
+  return number(s);
 }
 
 /// Calls `body(line, number)` for each line, counted from 1, until it returns false.

@@ -8,9 +8,10 @@
 #include <boost/interprocess/file_mapping.hpp>
 #include <boost/interprocess/mapped_region.hpp>
 #include <cstring>
-#include <limits>
 #include <optional>
 #include <thread>
+
+#include "versine/core/numbers.hpp"
 
 namespace versine::io {
 
@@ -23,8 +24,6 @@ struct GeometryTable::Mapping {
 };
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 Error unreadable(const std::filesystem::path& path, std::string found) {
   return {.file = path.string(),

@@ -26,7 +26,7 @@ namespace {
 using Result = tl::expected<std::size_t, std::string>;
 using SourcePtr = std::unique_ptr<InputStream::Source>;
 
-constexpr std::size_t block = std::size_t{1} << 17;
+constexpr std::size_t stream_block = std::size_t{1} << 17;
 
 struct FileCloser {
   void operator()(std::FILE* file) const { std::fclose(file); }
@@ -70,7 +70,7 @@ class Memory final : public InputStream::Source {
 
 class GzipSource final : public InputStream::Source {
  public:
-  explicit GzipSource(SourcePtr from) : from_(std::move(from)), in_(block) {
+  explicit GzipSource(SourcePtr from) : from_(std::move(from)), in_(stream_block) {
     inflateInit2(&z_, 15 + 32);  // 32: zlib or gzip header, found by itself
   }
   GzipSource(const GzipSource&) = delete;
@@ -111,7 +111,7 @@ class GzipSource final : public InputStream::Source {
 
 class ZstdSource final : public InputStream::Source {
  public:
-  explicit ZstdSource(SourcePtr from) : from_(std::move(from)), in_(block), z_(ZSTD_createDStream()) {}
+  explicit ZstdSource(SourcePtr from) : from_(std::move(from)), in_(stream_block), z_(ZSTD_createDStream()) {}
 
   Result read(std::span<char> into) override {
     ZSTD_outBuffer out{into.data(), into.size(), 0};
@@ -189,7 +189,7 @@ Expected<std::string> read_text(const std::filesystem::path& path, std::size_t l
   std::string text;
   std::size_t size = 0;
   while (true) {
-    text.resize(std::max<std::size_t>(block, 2 * size));
+    text.resize(std::max<std::size_t>(stream_block, 2 * size));
     const auto n = stream->read(std::span(text).subspan(size));
     if (!n) return tl::unexpected(n.error());
     size += *n;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "versine/io/journey_brussels.hpp"
 
-#include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
 #include <array>
 #include <chrono>
 #include <cmath>
 
+#include "field_text.hpp"
 #include "file_bytes.hpp"
 #include "versine/core/units.hpp"
 
@@ -24,13 +24,6 @@ std::vector<std::string_view> cells_of(std::string_view line) {
     from = to + 1;
   }
   return out;
-}
-
-std::optional<double> number(std::string_view text) {
-  double x = 0.0;
-  const auto [end, code] = fast_float::from_chars(text.data(), text.data() + text.size(), x);
-  if (code != std::errc() || end != text.data() + text.size() || !std::isfinite(x)) return std::nullopt;
-  return x;
 }
 
 /// 2022-01-14T10:45:25.400 as UTC; the fraction may be missing.

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "landxml_parts.hpp"
+#include "versine/core/numbers.hpp"
 
 namespace versine::io::detail {
 
@@ -14,8 +14,6 @@ using design::Shape;
 using Verdict = design::AuditFinding::Verdict;
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// An unsymmetrical parabola is two symmetrical ones; the gradient where they meet follows from their intersections.
 void add_unsymmetrical(const design::VerticalPoint& p, double in, double out, double g1, double g2,

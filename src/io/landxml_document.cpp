@@ -4,18 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 #include "landxml_parts.hpp"
+#include "versine/core/numbers.hpp"
 
 namespace versine::io::detail {
 
 using design::Shape;
-namespace {
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-}  // namespace
-
 double number(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r\n+");
   if (first == std::string_view::npos) return nan;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "landxml_parts.hpp"
+#include "versine/core/numbers.hpp"
 
 namespace versine::io::detail {
 
@@ -11,8 +12,6 @@ using design::Shape;
 using Verdict = design::AuditFinding::Verdict;
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 bool finite(const design::MapPosition& p) {
   return std::isfinite(p.easting) && std::isfinite(p.northing);

@@ -6,7 +6,7 @@
 namespace versine::io {
 
 namespace {
-constexpr std::size_t block = std::size_t{1} << 20;
+constexpr std::size_t line_block = std::size_t{1} << 20;
 constexpr std::size_t longest_line = std::size_t{1} << 24;
 }  // namespace
 
@@ -33,11 +33,11 @@ bool LineReader::fill() {
     return false;
   }
   if (rest > 0) std::memmove(buffer_.data(), buffer_.data() + line_start_, rest);
-  if (buffer_.size() < rest + block) buffer_.resize(rest + block);
+  if (buffer_.size() < rest + line_block) buffer_.resize(rest + line_block);
   at_ -= line_start_;
   line_start_ = 0;
   end_ = rest;
-  const auto n = stream_.read(std::span(buffer_).subspan(rest, block));
+  const auto n = stream_.read(std::span(buffer_).subspan(rest, line_block));
   if (!n) {
     error_ = n.error();
     error_->line = line_number_ + 1;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fast_float/fast_float.h>
 #include <fmt/format.h>
 
 #include <array>
 #include <cmath>
 
+#include "field_text.hpp"
 #include "read_from.hpp"
 #include "time_columns.hpp"
 #include "versine/core/units.hpp"
@@ -40,13 +40,6 @@ Sentence split(std::string_view body) {
     body.remove_prefix(n + 1);
   }
   return s;
-}
-
-std::optional<double> number(std::string_view text) {
-  double x = 0.0;
-  const auto [end, code] = fast_float::from_chars(text.data(), text.data() + text.size(), x);
-  if (code != std::errc() || end != text.data() + text.size() || !std::isfinite(x)) return std::nullopt;
-  return x;
 }
 
 // "hhmmss.sss"

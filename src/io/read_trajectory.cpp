@@ -27,10 +27,10 @@ geodesy::Covariance3 diagonal(double a, double b, double c) {
 }
 
 /// Optional columns by name; a value that is not there is NaN.
-class Columns {
+class TrajectoryColumns {
  public:
-  static Expected<Columns> bind(TableReader& table) {
-    Columns columns;
+  static Expected<TrajectoryColumns> bind(TableReader& table) {
+    TrajectoryColumns columns;
     const auto add = [&](const char* base, Quantity quantity) -> Expected<void> {
       const auto slot = table.find(base, quantity);
       if (!slot) return tl::unexpected(slot.error());
@@ -81,7 +81,7 @@ Expected<Read<Trajectory>> read_text_trajectory(const TrajectoryFile& file) {
     if (!slot) return tl::unexpected(slot.error());
     angle[i] = *slot;
   }
-  const auto columns = Columns::bind(table);
+  const auto columns = TrajectoryColumns::bind(table);
   if (!columns) return tl::unexpected(columns.error());
 
   Read<Trajectory> read;

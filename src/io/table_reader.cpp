@@ -9,15 +9,15 @@
 #include <cmath>
 #include <cstring>
 
+#include "field_text.hpp"
 #include "table_fields.hpp"
 #include "versine/core/calendar.hpp"
+#include "versine/core/numbers.hpp"
 #include "versine/core/text.hpp"
 
 namespace versine::io {
 
 namespace {
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 bool blank(char c) {
   return c == ' ' || c == '\t';
 }

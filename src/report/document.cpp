@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "colours.hpp"
 #include "versine/report/pdf.hpp"
 #include "versine/report/svg.hpp"
 
@@ -11,7 +12,7 @@ namespace versine::report {
 namespace {
 
 constexpr double head = 11.0, foot = 10.5;  // mm
-constexpr std::uint32_t muted = 0x57606a, accent = 0x0b5fa5;
+using colours::accent, colours::muted;
 
 // The sheet on the screen, and A4 landscape on paper. Verdana has the widths of DejaVu Sans.
 constexpr const char* style = R"(
@@ -36,7 +37,7 @@ void draw_frame(Drawing& d, const Document& doc, const Section& section, const s
          {.size = 3.4, .bold = true});
   d.text({d.width, 4.6}, section.title, {.size = 3.4, .anchor = Anchor::end, .bold = true, .colour = accent});
   d.line({0.0, 7.0}, {d.width, 7.0}, {accent, 0.5, Dash::solid});
-  d.line({0.0, bottom - 8.2}, {d.width, bottom - 8.2}, {0xd0d7de, 0.2, Dash::solid});
+  d.line({0.0, bottom - 8.2}, {d.width, bottom - 8.2}, {colours::rule, 0.2, Dash::solid});
   d.text({0.0, bottom - 4.8}, fitted(doc.footer, d.width, 2.15), {.size = 2.15, .colour = muted});
   d.text({0.0, bottom - 1.2}, fitted(doc.source, d.width - 40.0, 2.15), {.size = 2.15, .colour = muted});
   d.text({d.width, bottom - 1.2}, page_number, {.size = 2.4, .anchor = Anchor::end, .colour = muted});

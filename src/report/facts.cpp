@@ -7,11 +7,13 @@
 #include <cstdlib>
 #include <limits>
 
+#include "colours.hpp"
+
 namespace versine::report {
 
 namespace {
 
-constexpr std::uint32_t muted = 0x57606a;
+using colours::muted;
 const std::string nothing;
 
 std::size_t index_of(const RawTable& t, const std::string& column) {

@@ -17,7 +17,7 @@ namespace {
 /// Okabe and Ito's palette: told apart by colour-blind readers too.
 constexpr std::array<std::uint32_t, 7> palette{0x0072B2, 0xD55E00, 0x009E73, 0xCC79A7, 0xE69F00, 0x56B4E9, 0x000000};
 constexpr double left = 17.0, right = 4.5, top = 9.0, bottom = 12.5, legend_row = 4.6;  // mm
-constexpr std::uint32_t ink = 0x333333, grid = 0xdddddd;
+constexpr std::uint32_t frame = 0x333333, lattice = 0xdddddd;
 
 /// Values to millimetres along one axis.
 struct Scale {
@@ -74,11 +74,11 @@ std::string number(double x) {
 
 void draw_axes(Drawing& d, const Box& box, const Figure& f, const Scale& x, const Scale& y, double axis_bottom) {
   const auto xs = axis_ticks(x, 7), ys = axis_ticks(y, 6);
-  for (const double t : xs) d.line({x(t), y.from}, {x(t), y.to}, {grid, 0.2, Dash::solid});
-  for (const double t : ys) d.line({x.from, y(t)}, {x.to, y(t)}, {grid, 0.2, Dash::solid});
+  for (const double t : xs) d.line({x(t), y.from}, {x(t), y.to}, {lattice, 0.2, Dash::solid});
+  for (const double t : ys) d.line({x.from, y(t)}, {x.to, y(t)}, {lattice, 0.2, Dash::solid});
   for (const double t : xs) d.text({x(t), y.from + 4.0}, number(t), {.size = 2.9, .anchor = Anchor::middle});
   for (const double t : ys) d.text({x.from - 1.5, y(t) + 1.0}, number(t), {.size = 2.9, .anchor = Anchor::end});
-  d.rectangle({x.from, y.to, x.to - x.from, y.from - y.to}, {}, Pen{ink, 0.25, Dash::solid});
+  d.rectangle({x.from, y.to, x.to - x.from, y.from - y.to}, {}, Pen{frame, 0.25, Dash::solid});
   d.text({box.x + 0.5 * box.width, box.y + 5.3}, f.title, {.size = 3.4, .anchor = Anchor::middle, .bold = true});
   d.text({0.5 * (x.from + x.to), axis_bottom - 3.2}, f.x.label, {.size = 3.1, .anchor = Anchor::middle});
   d.text({box.x + 4.0, 0.5 * (y.from + y.to)}, f.y.label, {.size = 3.1, .anchor = Anchor::middle, .upright = false});

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "colours.hpp"
 #include "versine/report/map.hpp"
 #include "versine/report/strip.hpp"
 
@@ -14,8 +15,8 @@ namespace versine::report {
 
 namespace {
 
-constexpr std::uint32_t muted = 0x57606a;
-constexpr std::uint32_t taken_colour = 0x0b5fa5, other_colour = 0xc25e00, doubt_colour = 0xb3261e;
+using colours::muted;
+constexpr std::uint32_t taken_colour = colours::accent, other_colour = 0xc25e00, doubt_colour = colours::bad;
 
 void add_network(MapView& view, const GeorefReport& r, bool frames) {
   for (const auto& line : r.lines) view.lines.push_back({line, {0xc3c9d0, 0.15, Dash::solid}, frames});
@@ -50,8 +51,12 @@ void keep_near(MapView& view) {
 
 void draw_state(Drawing& d, const Box& box, const GeorefReport& r, const Texts& t) {
   const bool failed = !r.failed.rows.empty(), doubt = !r.ambiguous.rows.empty();
-  const std::uint32_t colour = failed ? 0xb3261e : doubt ? 0x9a6700 : 0x1a7f37;
-  d.rectangle(box, Fill{failed ? 0xfceceau : doubt ? 0xfdf6e3u : 0xeaf7eeu}, Pen{colour, 0.5, Dash::solid});
+  const std::uint32_t colour = failed ? colours::bad : doubt ? colours::doubt : colours::good;
+  d.rectangle(box,
+              Fill{failed  ? colours::bad_fill
+                   : doubt ? colours::doubt_fill
+                           : colours::good_fill},
+              Pen{colour, 0.5, Dash::solid});
   d.rectangle({box.x, box.y, 3.0, box.height}, Fill{colour});
   d.text({box.x + 7.0, box.y + 8.2},
          t(failed  ? "georef.failed"

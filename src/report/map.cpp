@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "colours.hpp"
 #include "versine/report/figure.hpp"
 #include "versine/report/strip.hpp"
 
@@ -13,7 +14,7 @@ namespace versine::report {
 
 namespace {
 
-constexpr std::uint32_t muted = 0x57606a;
+using colours::muted;
 
 struct Frame {
   double low_x = std::numeric_limits<double>::infinity(), high_x = -low_x;
@@ -53,7 +54,7 @@ double bar_length(double metres) {
 
 void draw_furniture(Drawing& d, const Box& box, double per_metre, const std::string& caption) {
   const double length = bar_length(0.25 * box.width / per_metre), x = box.right() - 3.0, y = box.bottom() - 3.0;
-  d.line({x - length * per_metre, y}, {x, y}, {0x1b1f24, 0.4, Dash::solid});
+  d.line({x - length * per_metre, y}, {x, y}, {colours::ink, 0.4, Dash::solid});
   d.text({x, y - 1.2}, length >= 1000.0 ? fmt::format("{:g} km", length / 1000.0) : fmt::format("{:g} m", length),
          {.size = 2.3, .anchor = Anchor::end});
   d.area({{x - 2.0, box.y + 3.0}, {x - 0.7, box.y + 7.5}, {x - 2.0, box.y + 6.6}, {x - 3.3, box.y + 7.5}},
@@ -72,7 +73,7 @@ void draw_map(Drawing& d, const Box& box, const MapView& view) {
     for (const Point& p : line.points) frame.add(p);
   }
   for (const MapMark& mark : view.marks) frame.add(mark.at);
-  d.rectangle(box, Fill{0xfbfcfd}, Pen{0xd0d7de, 0.2, Dash::solid});
+  d.rectangle(box, Fill{0xfbfcfd}, Pen{colours::rule, 0.2, Dash::solid});
   if (!(frame.low_x <= frame.high_x)) return;
   const double margin = 7.0;
   const double width = std::max(frame.high_x - frame.low_x, 1.0), height = std::max(frame.high_y - frame.low_y, 1.0);

@@ -3,13 +3,14 @@
 
 #include <fmt/format.h>
 
+#include "colours.hpp"
 #include "versine/report/strip.hpp"
 
 namespace versine::report {
 
 namespace {
 
-constexpr std::uint32_t muted = 0x57606a;
+using colours::muted;
 
 /// Figures in rows on one page.
 void draw_grid(Drawing& d, const Box& box, const std::vector<Figure>& figures, int columns) {
@@ -27,9 +28,9 @@ void add_cover(Pages& pages, const PlanReport& r, const Texts& t) {
   Drawing& d = pages.page();
   d.text({box.x, box.y + 8.0}, t("cover.plan"), {.size = 7.0, .bold = true});
   d.text({box.x, box.y + 15.0}, fitted(subject_of(r.facts), 130.0, 4.2), {.size = 4.2, .colour = muted});
-  const std::uint32_t colour = r.met ? 0x1a7f37 : 0xb3261e;
+  const std::uint32_t colour = r.met ? colours::good : colours::bad;
   const Box state{box.x + 140.0, box.y + 1.0, box.width - 140.0, 19.0};
-  d.rectangle(state, Fill{r.met ? 0xeaf7eeu : 0xfceceau}, Pen{colour, 0.5, Dash::solid});
+  d.rectangle(state, Fill{r.met ? colours::good_fill : colours::bad_fill}, Pen{colour, 0.5, Dash::solid});
   d.rectangle({state.x, state.y, 3.0, state.height}, Fill{colour});
   d.text({state.x + 7.0, state.y + 8.2}, t(r.met ? "plan.met" : "plan.not_met"),
          {.size = 5.2, .bold = true, .colour = colour});

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "colours.hpp"
 #include "versine/report/figure.hpp"
 
 namespace versine::report {
@@ -14,7 +15,8 @@ namespace {
 
 constexpr double bin = 0.35;   // mm, of a curve and its band
 constexpr double least = 0.1;  // mm: a narrower band lies under its curve
-constexpr std::uint32_t grid = 0xe3e7eb, muted = 0x57606a, ink = 0x1b1f24;
+using colours::ink, colours::muted;
+constexpr std::uint32_t grid = 0xe3e7eb;
 
 struct Scale {
   double from = 0.0, per = 1.0, origin = 0.0;
@@ -232,7 +234,7 @@ std::string decimal(double value, int decimals) {
 }
 
 std::uint32_t level_colour(int severity, int severities) {
-  if (severity + 1 >= severities) return 0xb3261e;
+  if (severity + 1 >= severities) return colours::bad;
   return severity + 2 >= severities ? 0xc25e00 : 0xb58900;
 }
 

@@ -5,13 +5,14 @@
 #include <cmath>
 #include <map>
 
+#include "colours.hpp"
 #include "survey_parts.hpp"
 
 namespace versine::report {
 
 namespace {
 
-constexpr std::uint32_t muted = 0x57606a, ink = 0x1b1f24;
+using colours::ink, colours::muted;
 
 std::string levels_counted(const SurveyReport& r, const Texts& t) {
   std::map<std::string, int> counts;
@@ -32,15 +33,15 @@ void draw_verdict(Drawing& d, const Box& box, const SurveyReport& r, const Texts
   const Look look = [&]() -> Look {
     switch (verdict(r)) {
       case Verdict::not_assessed:
-        return {"verdict.not_assessed", 0x57606a, 0xf3f5f8};
+        return {"verdict.not_assessed", colours::muted, 0xf3f5f8};
       case Verdict::accepted:
-        return {"verdict.accepted", 0x1a7f37, 0xeaf7ee};
+        return {"verdict.accepted", colours::good, colours::good_fill};
       case Verdict::with_remarks:
-        return {"verdict.with_remarks", 0x9a6700, 0xfdf6e3};
+        return {"verdict.with_remarks", colours::doubt, colours::doubt_fill};
       case Verdict::not_accepted:
-        return {"verdict.not_accepted", 0xb3261e, 0xfcecea};
+        return {"verdict.not_accepted", colours::bad, colours::bad_fill};
     }
-    return {"verdict.not_assessed", 0x57606a, 0xf3f5f8};
+    return {"verdict.not_assessed", colours::muted, 0xf3f5f8};
   }();
   d.rectangle(box, Fill{look.fill}, Pen{look.colour, 0.5, Dash::solid});
   d.rectangle({box.x, box.y, 3.0, box.height}, Fill{look.colour});
@@ -104,7 +105,7 @@ void draw_signatures(Drawing& d, const Box& box, const Texts& t) {
 }
 
 void draw_heading(Drawing& d, Point at, const std::string& text) {
-  d.text(at, text, {.size = 3.0, .bold = true, .colour = 0x0b5fa5});
+  d.text(at, text, {.size = 3.0, .bold = true, .colour = colours::accent});
 }
 
 struct Summary {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "colours.hpp"
 #include "survey_parts.hpp"
 
 namespace versine::report {
@@ -70,7 +71,7 @@ std::vector<Strip> survey_strips(const SurveyReport& r, const Texts& t) {
   std::vector<Strip> out;
   if (const Quantity* k = r.find("curvature")) {
     Strip s{.name = t("strips.curvature"), .detail = t("strips.curvature_detail")};
-    s.curves.push_back({k->value, {}, 0x1b1f24, Dash::solid});
+    s.curves.push_back({k->value, {}, colours::ink, Dash::solid});
     s.decimals = 2;
     out.push_back(std::move(s));
   }
@@ -97,7 +98,7 @@ StripAxis survey_axis(const SurveyReport& r, double from, double to, double span
 
 MapView survey_map(const SurveyReport& r) {
   MapView view{.caption = r.crs};
-  view.lines.push_back({r.axis, {0x0b5fa5, 0.6, Dash::solid}});
+  view.lines.push_back({r.axis, {colours::accent, 0.6, Dash::solid}});
   if (r.axis.empty()) return view;
   if (!r.distance.empty()) {
     const double length = r.distance.back() - r.distance.front();
@@ -136,7 +137,7 @@ void add_strip_pages(Pages& pages, const SurveyReport& r, const Texts& t) {
     pages.page().text({box.x, box.y + 2.6},
                       fmt::format("km {} \xE2\x80\x93 {}   {}", place_text(r.posted_at(from)),
                                   place_text(r.posted_at(to - 1e-6)), t("strips.note")),
-                      {.size = 2.5, .colour = 0x57606a});
+                      {.size = 2.5, .colour = colours::muted});
     box.y += 4.5;
     box.height -= 4.5;
     draw_strips(pages.page(), box, strips, survey_axis(r, s, to, per_page));

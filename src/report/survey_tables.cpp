@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "colours.hpp"
 #include "survey_parts.hpp"
 #include "versine/report/figure.hpp"
 
@@ -88,11 +89,11 @@ void add_exceedances(Pages& pages, const SurveyReport& r, const Texts& t) {
     const std::string& level = x.at(i, "level");
     table.rows.push_back({{t.phrase(level), level_colour(severity_of(r, level), levels), true},
                           {t.quantity(x.at(i, "column"))},
-                          {place(x, i, "peak_m"), 0x1b1f24, true},
+                          {place(x, i, "peak_m"), colours::ink, true},
                           {place(x, i, "start_m")},
                           {place(x, i, "end_m")},
                           {x.at(i, "length_m")},
-                          {x.at(i, "value"), 0x1b1f24, true},
+                          {x.at(i, "value"), colours::ink, true},
                           {x.at(i, "sigma")},
                           {x.at(i, "limit")},
                           {t.phrase(x.at(i, "unit"))},
@@ -170,7 +171,7 @@ void add_sections(Pages& pages, const SurveyReport& r, const Texts& t) {
       row.push_back({s.at(i, column), bad && column == "tqi_mm" ? 0xb3261eu : 0x1b1f24u, column == "tqi_mm"});
     }
     if (classes) row.push_back({s.at(i, "classes")});
-    if (over) row.push_back({s.at(i, "over"), 0xb3261e});
+    if (over) row.push_back({s.at(i, "over"), colours::bad});
   }
   pages.add(table, top);
 }
@@ -277,7 +278,7 @@ void add_control(Pages& pages, const SurveyReport& r, const Texts& t) {
     }
     top = pages.add(table, top) + 6.0;
   } else {
-    pages.page().text({box.x, box.y + 3.5}, t("control.none"), {.size = 2.8, .colour = 0x57606a});
+    pages.page().text({box.x, box.y + 3.5}, t("control.none"), {.size = 2.8, .colour = colours::muted});
     top = box.y + 9.0;
   }
   Table sensors{.id = "sensors",

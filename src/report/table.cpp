@@ -3,12 +3,15 @@
 
 #include <algorithm>
 
+#include "colours.hpp"
+
 namespace versine::report {
 
 namespace {
 
 constexpr double full_size = 2.45, gap = 6.0;  // mm
-constexpr std::uint32_t rule = 0xd0d7de, head_fill = 0xf3f5f8, muted = 0x57606a;
+using colours::muted, colours::rule;
+constexpr std::uint32_t head_fill = 0xf3f5f8;
 
 struct Layout {
   std::vector<double> left, width;
@@ -82,7 +85,7 @@ double draw_head(const Table& t, const Layout& l, Drawing& d, double x, double y
     }
   }
   d.end();
-  d.line({x, y + height}, {x + width, y + height}, {0x57606a, 0.25, Dash::solid});
+  d.line({x, y + height}, {x + width, y + height}, {colours::muted, 0.25, Dash::solid});
   return y + height;
 }
 

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "versine/core/numbers.hpp"
 #include "versine/simulation/world.hpp"
 
 namespace versine::simulation {
 
 namespace {
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
 // The value of a sample: set to another's, to NaN, or shifted.
 void take_value(sensors::ImuSample& s, const sensors::ImuSample& from) {
   s.dtheta = from.dtheta, s.dvel = from.dvel;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "versine/core/numbers.hpp"
 #include "versine/geodesy/attitude.hpp"
 #include "versine/stationing/air.hpp"
 
@@ -14,7 +15,6 @@ namespace versine::stationing {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 using geodesy::wrap_pi;
 
 Error at(const Stationing& s, const Sighting& r, std::string found, std::string expected, std::string advice) {

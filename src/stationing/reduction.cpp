@@ -7,12 +7,12 @@
 #include <cmath>
 
 #include "sets.hpp"
+#include "versine/core/numbers.hpp"
 #include "versine/geodesy/attitude.hpp"
 
 namespace versine::stationing {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double earth_radius = 6.371e6;
 using geodesy::wrap_pi;
 

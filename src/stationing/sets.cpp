@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "versine/core/numbers.hpp"
 #include "versine/geodesy/attitude.hpp"
 
 namespace versine::stationing {
 
 using geodesy::wrap_pi;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 void turn_sets(Grouped& g) {
   std::vector<double> first(g.points.size(), nan);

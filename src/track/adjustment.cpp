@@ -14,7 +14,7 @@ namespace versine::track {
 namespace {
 
 /// Problem on the coarse points of one window: movements x, bounds of |x|, |e + x|, |bend|, and slacks of checks.
-struct Window {
+struct Piece {
   std::vector<double> e;      // deviation before
   std::vector<char> fixed;    // movement must be zero
   std::vector<double> known;  // movements fixed by the window before; NaN: free
@@ -23,7 +23,7 @@ struct Window {
 
 class Program {
  public:
-  Program(const AdjustmentOptions& o, const Window& w) : o_(o), w_(w), n_(static_cast<int>(w.e.size())) {
+  Program(const AdjustmentOptions& o, const Piece& w) : o_(o), w_(w), n_(static_cast<int>(w.e.size())) {
     for (int i = 0; i < n_; ++i) {
       const auto k = static_cast<std::size_t>(i);
       const bool zero = w.fixed[k] != 0 || (w.at_start && i == 0) || (w.at_end && i == n_ - 1);
@@ -104,7 +104,7 @@ class Program {
   }
 
   const AdjustmentOptions& o_;
-  const Window& w_;
+  const Piece& w_;
   int n_;
   std::vector<double> cost_, low_, high_, row_low_, row_high_, value_;
   std::vector<int> row_, col_;
@@ -142,7 +142,7 @@ Expected<Adjustment> plan_adjustment(std::span<const double> mileage, std::span<
   const auto window = std::max<std::size_t>(20, static_cast<std::size_t>(o.window / o.spacing)), hop = window / 2;
   for (std::size_t a = 0; n > 2; a += hop) {
     const std::size_t b = std::min(n, a + window);
-    Window w;
+    Piece w;
     w.at_start = a == 0;
     w.at_end = b == n;
     for (std::size_t k = a; k < b; ++k) {

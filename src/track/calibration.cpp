@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 
+#include "versine/core/numbers.hpp"
 #include "versine/design/alignment.hpp"
 #include "versine/geodesy/ellipsoid.hpp"
 #include "versine/track/mileage.hpp"
@@ -16,8 +16,6 @@
 
 namespace versine::track {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Azimuth of the trolley's path of travel around each kept epoch, over about `base` metres, along its x axis, true
 /// north; the body's own point half-way turns with the path, so the chord's azimuth is that of the tangent.

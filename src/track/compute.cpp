@@ -5,17 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "parameters.hpp"
+#include "versine/core/numbers.hpp"
 #include "versine/design/alignment.hpp"
 #include "versine/track/sleepers.hpp"
 
 namespace versine::track {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 DesignGrid design_on(const GeometryInput& input, const RunMileage& run, RailGrid& rails,
                      const GeometryOptions& options) {

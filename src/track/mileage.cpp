@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "versine/core/numbers.hpp"
 #include "versine/design/alignment.hpp"
 #include "versine/design/axis_index.hpp"
 #include "versine/track/local_map.hpp"
@@ -15,8 +16,6 @@
 
 namespace versine::track {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Way of the trolley at each epoch, signed along its x axis, m (real metres, horizontal).
 std::vector<double> way_along(const geodesy::Trajectory& trajectory, const Eigen::Matrix3d& C_bv) {

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "versine/core/numbers.hpp"
 #include "versine/track/versine.hpp"
 
 namespace versine::track {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr float nanf = std::numeric_limits<float>::quiet_NaN();
 
 double square(double x) {

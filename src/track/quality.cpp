@@ -5,16 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 
+#include "versine/core/numbers.hpp"
 #include "versine/track/butterworth.hpp"
 #include "versine/track/versine.hpp"
 
 namespace versine::track {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 int severity_of(const LimitProfile& profile, const std::string& level) {
   const auto it = std::find(profile.levels.begin(), profile.levels.end(), level);

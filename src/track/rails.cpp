@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "versine/core/numbers.hpp"
 #include "versine/track/local_map.hpp"
 #include "versine/track/resampling.hpp"
 
@@ -13,7 +14,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Gauge readings by mileage, increasing.
 struct GaugeLine {

@@ -3,15 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
+#include "versine/core/numbers.hpp"
 #include "versine/track/versine.hpp"
 
 namespace versine::track {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Correlation of two signals over [a, b) with the second one `lag` points on.
 struct Sums {

@@ -4,13 +4,12 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "versine/core/numbers.hpp"
 
 namespace versine::track {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Index of the last sample at or before x, kept by a caller that asks in increasing order.
 std::size_t advance(std::span<const double> s, std::size_t i, double x) {
@@ -49,13 +48,13 @@ double integral(std::span<const double> s, std::span<const double> x, std::size_
   return sum;
 }
 
-struct Window {
+struct Stretch {
   std::size_t first, last;  // last is exclusive
   double half_width;
 };
 
 /// Samples strictly within the half width, at least four of them within a stretch without gaps.
-Window window_around(std::span<const double> s, std::size_t i, double x, double half_width, double max_gap) {
+Stretch window_around(std::span<const double> s, std::size_t i, double x, double half_width, double max_gap) {
   std::size_t a = i, b = i + 1;
   double h = half_width;
   while (a > 0 && x - s[a - 1] < h && s[a] - s[a - 1] <= max_gap) --a;
@@ -80,7 +79,7 @@ struct Local {
   Eigen::Vector3d a, b, c;           // value, slope, curvature terms for the three coordinates
 };
 
-Local solve(std::span<const double> s, std::span<const Eigen::Vector3d> r, const Window& w, double x,
+Local solve(std::span<const double> s, std::span<const Eigen::Vector3d> r, const Stretch& w, double x,
             const double* weight) {
   double m[5] = {0, 0, 0, 0, 0};
   Eigen::Matrix3d rhs = Eigen::Matrix3d::Zero();
@@ -164,7 +163,7 @@ std::vector<FitPoint> fit_moving(std::span<const double> s, std::span<const Eige
     out[k].sigma = nan;
     i = advance(s, i, at[k]);
     if (!covered(s, i, at[k], max_gap)) continue;
-    const Window w = window_around(s, i, at[k], half_width, max_gap);
+    const Stretch w = window_around(s, i, at[k], half_width, max_gap);
     const std::size_t n = w.last - w.first;
     base.resize(n);
     kernel.resize(n);

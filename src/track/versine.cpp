@@ -5,15 +5,13 @@
 #include <cmath>
 #include <complex>
 #include <deque>
-#include <limits>
 #include <numbers>
 
+#include "versine/core/numbers.hpp"
 #include "versine/geodesy/ellipsoid.hpp"
 
 namespace versine::track {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// A distance in steps: whole part, and what is left.
 struct Lag {

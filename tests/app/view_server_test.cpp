@@ -17,9 +17,9 @@ class ViewServerTest : public ::testing::Test {
     content.series = [](const std::string& id, double, double, std::size_t) -> std::optional<std::string> {
       return id == "gauge" ? std::optional<std::string>("abc") : std::nullopt;
     };
-    content.put_constraints = [this](const std::string& json) -> Expected<void> {
-      if (json == "bad") return fail({.found = "bad constraints"});
-      written = json;
+    content.put_constraints = [this](const std::string& text) -> Expected<void> {
+      if (text == "bad") return fail({.found = "bad constraints"});
+      written = text;
       return {};
     };
     auto started = ViewServer::start(content);

@@ -8,12 +8,11 @@
 #include <limits>
 #include <numbers>
 
+#include "versine/core/numbers.hpp"
 #include "versine/design/assemble.hpp"
 
 namespace versine::design {
 namespace {
-
-constexpr double inf = std::numeric_limits<double>::infinity();
 
 TEST(Transition, IntegralAndRateBelongToTheRamp) {
   for (int k = static_cast<int>(Shape::clothoid); k <= static_cast<int>(Shape::cubic_parabola); ++k) {

@@ -9,10 +9,10 @@
 #include <numbers>
 #include <random>
 
+#include "versine/core/numbers.hpp"
+
 namespace versine::design {
 namespace {
-
-constexpr double inf = std::numeric_limits<double>::infinity();
 
 /// Curves of all kinds, right and left, repeated until the line is long enough.
 HorizontalAxis long_line(double length) {

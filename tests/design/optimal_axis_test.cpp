@@ -8,10 +8,10 @@
 #include <numbers>
 #include <random>
 
+#include "versine/core/numbers.hpp"
+
 namespace versine::design {
 namespace {
-
-constexpr double inf = std::numeric_limits<double>::infinity();
 
 /// The line of the issue: two arcs, four transitions (clothoid and Bloss), a compound curve.
 Alignment truth() {

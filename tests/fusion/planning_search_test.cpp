@@ -13,7 +13,7 @@ namespace {
 
 using namespace units;
 
-PlanCase rlg() {
+PlanCase rlg_case() {
   PlanCase p;
   p.gyro = {.bias = 0.03 * deg_per_hour, .random_walk = 0.005 * deg_per_sqrt_hour};
   p.accelerometer = {.bias = 10e-6 * standard_gravity, .random_walk = 5e-6 * standard_gravity};
@@ -24,7 +24,7 @@ PlanCase rlg() {
 }
 
 TEST(PlanningChain, OneIntervalIsTheClosedForm) {
-  PlanCase p = rlg();
+  PlanCase p = rlg_case();
   p.intervals = 1;
   const auto chain = chain_accuracy(p);
   for (const auto& point : chain.profile) {
@@ -36,7 +36,7 @@ TEST(PlanningChain, OneIntervalIsTheClosedForm) {
 }
 
 TEST(PlanningChain, MoreIntervalsTeachMore) {
-  PlanCase p = rlg();
+  PlanCase p = rlg_case();
   const double alone = closed_form_worst(p).worst_cross();
   const auto chain = chain_accuracy(p);
   EXPECT_LT(chain.worst_interior.worst_cross(), alone);
@@ -47,7 +47,7 @@ TEST(PlanningChain, MoreIntervalsTeachMore) {
 
 TEST(PlanningChain, VersineIsExactForIndependentEnds) {
   // Chord from landmark to landmark with a perfect gyro and path noise only: a Brownian bridge between tied ends.
-  PlanCase p = rlg();
+  PlanCase p = rlg_case();
   p.gyro = {.bias = 1e-12, .random_walk = 1e-12};
   p.level = 1e-10;
   p.landmark = 1e-7;
@@ -59,7 +59,7 @@ TEST(PlanningChain, VersineIsExactForIndependentEnds) {
 
 TEST(PlanningSearch, AnswersAreOnTheEdge) {
   for (const PlanBasis basis : {PlanBasis::interval, PlanBasis::chain}) {
-    PlanCase p = rlg();
+    PlanCase p = rlg_case();
     const double required = 0.67 * mm;
     const auto spacing = largest_spacing(p, required, basis);
     ASSERT_TRUE(spacing);
@@ -67,21 +67,21 @@ TEST(PlanningSearch, AnswersAreOnTheEdge) {
     EXPECT_LE(worst_sigma(p, basis), required);
     p.spacing = *spacing + 0.5;
     EXPECT_GT(worst_sigma(p, basis), required);
-    p = rlg();
+    p = rlg_case();
     p.gyro.random_walk = largest_random_walk(p, required, basis).value();
     EXPECT_NEAR(worst_sigma(p, basis), required, 1e-3 * required);
   }
-  EXPECT_FALSE(largest_spacing(rlg(), 0.01 * mm, PlanBasis::interval));
+  EXPECT_FALSE(largest_spacing(rlg_case(), 0.01 * mm, PlanBasis::interval));
 }
 
 TEST(PlanningSearch, Figure6AtItsCorner) {
-  const SigmaMap map = vertical_map(rlg(), 0.3 * deg_per_hour, 0.03 * deg_per_sqrt_hour, 31);
+  const SigmaMap map = vertical_map(rlg_case(), 0.3 * deg_per_hour, 0.03 * deg_per_sqrt_hour, 31);
   EXPECT_NEAR(map.sigma.front(), std::sqrt(cross_variance({0.6 * mm, 0.6 * mm, 0.005 * deg, 0, 0}, 1, 60, 30)), 1e-12);
   for (std::size_t i = 1; i < map.x.size(); ++i) EXPECT_GT(map.sigma[i], map.sigma[i - 1]);
 }
 
 TEST(PlanningMethods, EachSensorHelps) {
-  PlanCase p = rlg();
+  PlanCase p = rlg_case();
   p.gyro.bias = 0.01 * deg_per_hour;
   const auto ins = method_accuracy(p, PlanMethod::ins_landmark);
   const auto aided = method_accuracy(p, PlanMethod::ins_odometer_landmark);

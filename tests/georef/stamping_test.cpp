@@ -15,7 +15,7 @@
 namespace versine::georef {
 namespace {
 
-constexpr double a = 0.5;
+constexpr double acceleration = 0.5;
 
 std::unique_ptr<Map> two_tracks() {
   network::NetworkSource s;
@@ -46,8 +46,8 @@ RecordingResult accelerating(const Map& map, double seconds) {
   p.probability = 0.9;
   for (std::size_t k = 0; k < j.steps; ++k) {
     const double t = 0.01 * static_cast<double>(k);
-    p.motion.distance.push_back(0.5 * a * t * t);
-    p.motion.speed.push_back(static_cast<float>(a * t));
+    p.motion.distance.push_back(0.5 * acceleration * t * t);
+    p.motion.speed.push_back(static_cast<float>(acceleration * t));
     p.motion.sigma_distance.push_back(0.3F);
     p.motion.sigma_speed.push_back(0.1F);
   }
@@ -70,11 +70,11 @@ TEST(Stamping, PositionsAreThoseOfTheMovement) {
   for (const double t : {0.0, 3.3337, 44.0, 44.8, 44.9, 70.12345, 12.0, 80.0}) {  // forwards and back again
     const auto p = cursor.at(Time::from_seconds(1000.0 + t));
     ASSERT_TRUE(p) << t;
-    const double d = 0.5 * a * t * t, joint = ground(*map, 0);
+    const double d = 0.5 * acceleration * t * t, joint = ground(*map, 0);
     EXPECT_NEAR(p->path_distance, d, 1e-4);
     EXPECT_EQ(map->network.tracks[p->track.track].line_id, d < joint ? "first" : "second");
     EXPECT_NEAR(p->track_distance, d < joint ? d : ground(*map, 1) - (d - joint), 1e-4);
-    EXPECT_NEAR(p->speed, a * t, 1e-3);
+    EXPECT_NEAR(p->speed, acceleration * t, 1e-3);
     EXPECT_DOUBLE_EQ(p->probability, 0.9);
     EXPECT_NEAR((p->point - map->network.tracks[0].line.points().front()).norm(), 0.9996 * d, 0.02);
   }
@@ -103,7 +103,7 @@ Fed feed(const Map& map, const RecordingResult& result, const MonitoringOptions&
     block.channels.resize(2);
     for (const std::size_t end = std::min(n, i + block_size); i < end; ++i) {
       // The file begins 2 s before the journey.
-      const double t = static_cast<double>(i) / 20000.0 - 2.0, d = t > 0.0 ? 0.5 * a * t * t : 0.0;
+      const double t = static_cast<double>(i) / 20000.0 - 2.0, d = t > 0.0 ? 0.5 * acceleration * t * t : 0.0;
       block.times.push_back(Time{998'000'000'000 + static_cast<std::int64_t>(i) * 50'000});
       block.channels[0].push_back(static_cast<float>(3.0 * std::sin(2.0 * M_PI * 400.0 * t)));
       const bool hit = next_joint < joints.size() && d >= joints[next_joint];
@@ -136,7 +136,7 @@ TEST(Stamping, RmsAndPeakOfEachMetre) {
     EXPECT_GE(b.speed, 5.0);
     // The bin's middle was passed at the speed that belongs to it.
     const double middle = 0.5 * (b.from + b.to), d = id == "first" ? middle : joint + length - middle;
-    EXPECT_NEAR(b.speed, std::sqrt(2.0 * a * d), 0.06) << id << " " << b.from;
+    EXPECT_NEAR(b.speed, std::sqrt(2.0 * acceleration * d), 0.06) << id << " " << b.from;
     if (b.channels[1].peak < -1.0) {
       const double at = b.channels[1].peak_at;
       EXPECT_GE(at, b.from - 1e-6);
@@ -168,7 +168,7 @@ TEST(Stamping, TableInterpolatedLinearlyIsTheMovement) {
     for (const double u : {0.25, 0.5, 0.75}) {
       const double t = (1.0 - u) * (p.time.seconds() - 1000.0) + u * (q.time.seconds() - 1000.0);
       const double d = (1.0 - u) * p.position.path_distance + u * q.position.path_distance;
-      EXPECT_NEAR(d, 0.5 * a * t * t, 1.3e-3);
+      EXPECT_NEAR(d, 0.5 * acceleration * t * t, 1.3e-3);
     }
   }
   EXPECT_NEAR(fed.table.front().time.seconds(), 1000.0, 1e-4);

@@ -19,7 +19,7 @@ namespace {
 using ::testing::HasSubstr;
 
 /// 100 m with a gap of five metres and one exceedance.
-track::Geometry sample() {
+track::Geometry sample_geometry() {
   track::Geometry g;
   g.crs = "EPSG:25832";
   g.height_datum = "ellipsoidal";
@@ -86,10 +86,10 @@ class GeometryFiles : public ::testing::Test {
 };
 
 TEST_F(GeometryFiles, CsvHasUnitsPostedMileageAndEmptyFields) {
-  ASSERT_TRUE(write_geometry_csv(folder_ / "g.csv", sample()));
-  ASSERT_TRUE(write_geometry_columns_csv(folder_ / "c.csv", sample()));
-  ASSERT_TRUE(write_exceedances_csv(folder_ / "e.csv", sample(), quality()));
-  ASSERT_TRUE(write_sections_csv(folder_ / "s.csv", sample(), quality()));
+  ASSERT_TRUE(write_geometry_csv(folder_ / "g.csv", sample_geometry()));
+  ASSERT_TRUE(write_geometry_columns_csv(folder_ / "c.csv", sample_geometry()));
+  ASSERT_TRUE(write_exceedances_csv(folder_ / "e.csv", sample_geometry(), quality()));
+  ASSERT_TRUE(write_sections_csv(folder_ / "s.csv", sample_geometry(), quality()));
   const std::string g = content(folder_ / "g.csv");
   EXPECT_THAT(g, HasSubstr("gauge_mm,sigma_gauge_mm,cross_level_mm"));
   EXPECT_THAT(g, HasSubstr("\n60.000,12050.000,340.0000,0,500060.0000,0.0005,"));
@@ -97,12 +97,12 @@ TEST_F(GeometryFiles, CsvHasUnitsPostedMileageAndEmptyFields) {
   EXPECT_THAT(content(folder_ / "c.csv"), HasSubstr("gauge_mm,mm,yes,\"Gauge, with a comma\""));
   EXPECT_THAT(content(folder_ / "e.csv"),
               HasSubstr("12010.00,12012.00,12011.00,2.00,gauge,mm,IL,1440.000,0.100,1438.000"));
-  EXPECT_FALSE(write_geometry_csv(folder_ / "missing" / "g.csv", sample()));
+  EXPECT_FALSE(write_geometry_csv(folder_ / "missing" / "g.csv", sample_geometry()));
 }
 
 TEST_F(GeometryFiles, GeoPackageHasItsLayersAndSplitsLinesAtGaps) {
   const auto q = quality();
-  ASSERT_TRUE(write_geometry_gpkg(folder_ / "r.gpkg", sample(), &q));
+  ASSERT_TRUE(write_geometry_gpkg(folder_ / "r.gpkg", sample_geometry(), &q));
   GDALDataset* set = GDALDataset::Open((folder_ / "r.gpkg").c_str(), GDAL_OF_VECTOR);
   ASSERT_NE(set, nullptr);
   EXPECT_EQ(set->GetLayerByName("axis")->GetFeatureCount(), 2);
@@ -117,9 +117,9 @@ TEST_F(GeometryFiles, GeoPackageHasItsLayersAndSplitsLinesAtGaps) {
 
 TEST_F(GeometryFiles, DxfAndWorkbookAreWritten) {
   const auto q = quality();
-  ASSERT_TRUE(write_geometry_dxf(folder_ / "g.dxf", sample(), &q));
+  ASSERT_TRUE(write_geometry_dxf(folder_ / "g.dxf", sample_geometry(), &q));
   EXPECT_THAT(content(folder_ / "g.dxf"), HasSubstr("RAIL_LEFT"));
-  ASSERT_TRUE(write_geometry_xlsx(folder_ / "g.xlsx", sample(), &q, nullptr));
+  ASSERT_TRUE(write_geometry_xlsx(folder_ / "g.xlsx", sample_geometry(), &q, nullptr));
   EXPECT_GT(std::filesystem::file_size(folder_ / "g.xlsx"), 5000u);
 }
 
@@ -132,19 +132,19 @@ TEST_F(GeometryFiles, AdjustmentTableTakesTheUsersColumnsAndSigns) {
   t.slew_right_positive = false;
   t.delimiter = ";";
   t.decimal_comma = true;
-  ASSERT_TRUE(write_adjustment_csv(folder_ / "a.csv", sample(), &slew, nullptr, t));
+  ASSERT_TRUE(write_adjustment_csv(folder_ / "a.csv", sample_geometry(), &slew, nullptr, t));
   const std::string text = content(folder_ / "a.csv");
   EXPECT_THAT(text, HasSubstr("# slew: movement of the track, positive to the left"));
   EXPECT_THAT(text, HasSubstr("mileage_km;slew_mm;reference_rail\n12,000000;-3,4;left\n"));
   EXPECT_THAT(text, HasSubstr("12,030000;-3,4;right\n"));
   t.columns = {"slw_mm"};
-  const auto refused = write_adjustment_csv(folder_ / "a.csv", sample(), &slew, nullptr, t);
+  const auto refused = write_adjustment_csv(folder_ / "a.csv", sample_geometry(), &slew, nullptr, t);
   ASSERT_FALSE(refused);
   EXPECT_THAT(refused.error().message(), HasSubstr("slew_mm"));
 }
 
 TEST_F(GeometryFiles, TableIsReadBackByColumns) {
-  const track::Geometry g = sample();
+  const track::Geometry g = sample_geometry();
   ASSERT_TRUE(write_geometry_csv(folder_ / "geometry.csv", g));
   const auto table = GeometryTable::open(folder_ / "geometry.csv");
   ASSERT_TRUE(table) << table.error().message();

@@ -10,13 +10,12 @@
 #include <limits>
 
 #include "support/shared_data.hpp"
+#include "versine/core/numbers.hpp"
 #include "versine/io/alignment_file.hpp"
 #include "versine/io/tra_gra.hpp"
 
 namespace versine::io {
 namespace {
-
-constexpr double inf = std::numeric_limits<double>::infinity();
 
 std::filesystem::path temporary(const std::string& name) {
   return std::filesystem::temp_directory_path() / ("versine_landxml_" + std::to_string(::getpid()) + "_" + name);

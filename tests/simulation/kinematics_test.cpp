@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "versine/core/numbers.hpp"
 #include "versine/core/units.hpp"
 #include "versine/geodesy/attitude.hpp"
 #include "versine/inertial/mechanization.hpp"
@@ -137,8 +138,6 @@ TrackModel track_with(std::vector<design::HorizontalElement> elements, std::vect
   track.spectrum = spectrum;
   return track;
 }
-
-constexpr double inf = std::numeric_limits<double>::infinity();
 
 TEST(IdealImu, IntegratesBackOnAStraight) {
   const auto rails = build_rails(track_with({design::line(900.0)}, {}, Spectrum::german_low));

@@ -23,14 +23,14 @@ void spoil(Stationing& s, const std::string& point, Fault fault, double size) {
   }
 }
 
-struct Survey {
+struct SnoopedSurvey {
   std::mt19937 rng;
   std::vector<ControlPoint> nominal, real;
   std::vector<Truth> truth;
   std::vector<Stationing> stations;
   std::map<std::string, std::string> wrong;  ///< station to the point of its wrong sighting
 
-  Survey(unsigned seed, std::size_t targets) : rng(seed) {
+  SnoopedSurvey(unsigned seed, std::size_t targets) : rng(seed) {
     nominal = pairs_along(660.0, rng);
     real = real_places(nominal, rng);
     for (double s = 50.0; s < 620.0; s += 60.0) {
@@ -71,7 +71,7 @@ TEST(JointSnooping, EveryBlunderOverFiveMillimetresIsFound) {
     std::size_t blunders = 0, found = 0, good = 0, lost = 0, alone = 0, unseen = 0, moved = 0, stations = 0;
     Eigen::Array3d squares = Eigen::Array3d::Zero();
     for (unsigned seed = 0; seed < 40; ++seed) {
-      Survey survey(3000 + seed, targets);
+      SnoopedSurvey survey(3000 + seed, targets);
       survey.add_blunders(5.5e-3);
       const StationingRun run = survey.run();
       ASSERT_EQ(run.stations.size(), survey.stations.size());
@@ -108,7 +108,7 @@ TEST(JointSnooping, EveryBlunderOverFiveMillimetresIsFound) {
 TEST(JointSnooping, MovedPointAndWrongSightingAreToldApart) {
   std::size_t moved = 0, mistaken = 0;
   for (unsigned seed = 0; seed < 20; ++seed) {
-    Survey survey(7000 + seed, 7);
+    SnoopedSurvey survey(7000 + seed, 7);
     auto point = std::find_if(survey.real.begin(), survey.real.end(), [](const auto& p) { return p.name == "CP9"; });
     point->position += Eigen::Vector3d(3.5e-3, -3e-3, 2e-3);  // 5 mm
     for (std::size_t i = 0; i < survey.stations.size(); ++i) {

@@ -8,12 +8,12 @@
 namespace versine::track {
 namespace {
 
-struct Line {
+struct DippedLine {
   std::vector<double> mileage, e;
 };
 /// Smooth deviations with a fault of `height` at `at`.
-Line line(double length, double at, double height) {
-  Line l;
+DippedLine line_with_dip(double length, double at, double height) {
+  DippedLine l;
   for (double s = 0; s <= length; s += 0.5) {
     l.mileage.push_back(s);
     const double d = (s - at) / 8.0;
@@ -23,7 +23,7 @@ Line line(double length, double at, double height) {
 }
 
 TEST(Adjustment, BringsTheChecksWithinTheirLimitsWithLittleMovement) {
-  const Line l = line(800, 400, 0.012);
+  const DippedLine l = line_with_dip(800, 400, 0.012);
   const auto a = plan_adjustment(l.mileage, l.e, 0.5, {});
   ASSERT_TRUE(a) << a.error().message();
   EXPECT_GT(a->worst_before[0], 0.004);
@@ -38,7 +38,7 @@ TEST(Adjustment, BringsTheChecksWithinTheirLimitsWithLittleMovement) {
 }
 
 TEST(Adjustment, LiftsNeverLowerAndFixedPointsStay) {
-  const Line l = line(800, 400, -0.012);
+  const DippedLine l = line_with_dip(800, 400, -0.012);
   AdjustmentOptions o;
   o.smallest = 0.0;
   o.fixed = {{200, 220}};
@@ -53,7 +53,7 @@ TEST(Adjustment, LiftsNeverLowerAndFixedPointsStay) {
 }
 
 TEST(Adjustment, ContradictingOptionsAreRefused) {
-  const Line l = line(100, 50, 0.0);
+  const DippedLine l = line_with_dip(100, 50, 0.0);
   AdjustmentOptions o;
   o.smallest = 0.001;
   EXPECT_FALSE(plan_adjustment(l.mileage, l.e, 0.5, o));

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "test_run.hpp"
+#include "versine/core/numbers.hpp"
 #include "versine/track/butterworth.hpp"
 
 namespace versine::track {
@@ -14,7 +15,6 @@ namespace {
 
 using test::Builder;
 using test::Track;
-constexpr double two_pi = 2 * std::numbers::pi;
 
 GeometryOptions axis_options() {
   GeometryOptions o;

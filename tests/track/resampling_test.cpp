@@ -7,11 +7,12 @@
 #include <numbers>
 #include <random>
 
+#include "versine/core/numbers.hpp"
+
 namespace versine::track {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double two_pi = 2 * std::numbers::pi;
 
 std::vector<double> grid(double from, double to, double step) {
   std::vector<double> g;

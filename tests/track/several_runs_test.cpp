@@ -5,14 +5,13 @@
 #include <random>
 
 #include "test_run.hpp"
+#include "versine/core/numbers.hpp"
 #include "versine/core/units.hpp"
 #include "versine/track/calibration.hpp"
 #include "versine/track/repeatability.hpp"
 
 namespace versine::track {
 namespace {
-
-constexpr double two_pi = 2 * std::numbers::pi;
 
 Geometry rough(double shift, double stretch, double noise, unsigned seed) {
   std::mt19937_64 random(seed);

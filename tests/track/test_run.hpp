@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 
+#include "versine/core/numbers.hpp"
 #include "versine/design/alignment.hpp"
 #include "versine/geodesy/local_frame.hpp"
 #include "versine/track/compute.hpp"
@@ -14,7 +15,6 @@ namespace versine::track::test {
 /// Straight, clothoid, right-hand arc of 800 m with 100 mm cant, clothoid, straight; gradient 8 per mille.
 inline design::Alignment example_line() {
   using namespace design;
-  const double inf = std::numeric_limits<double>::infinity();
   return {.horizontal = *HorizontalAxis::chain({560000.0, 5600000.0, 0.7},
                                                {line(400), transition(Shape::clothoid, 100, inf, 800), arc(300, 800),
                                                 transition(Shape::clothoid, 100, 800, inf), line(600)}),

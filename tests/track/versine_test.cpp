@@ -6,13 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "versine/core/numbers.hpp"
 #include "versine/geodesy/local_frame.hpp"
 
 namespace versine::track {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double two_pi = 2 * std::numbers::pi;
 
 /// A left-hand arc (centre to the west of a line that heads north) on the Earth, in real metres.
 std::vector<Vector3d> arc(double radius, double step, std::size_t n) {

@@ -12,7 +12,7 @@ namespace versine::cli {
 
 namespace {
 
-struct Options {
+struct AlignmentOptions {
   io::AlignmentFile file;
   std::string landxml;
   design::AuditLimits limits;
@@ -63,7 +63,7 @@ void print(const design::Imported& imported) {
   if (imported.audit.empty()) fmt::print("  the audit found nothing\n");
 }
 
-int run(const Options& options) {
+int run(const AlignmentOptions& options) {
   const auto all = io::read_alignments(options.file, options.limits);
   if (!all) return report(all.error());
   bool usable = true;
@@ -88,7 +88,7 @@ int run(const Options& options) {
 }  // namespace
 
 int audit_alignment(const std::filesystem::path& file, bool json) {
-  Options options;
+  AlignmentOptions options;
   options.file.path = file;
   options.json = json;
   return run(options);
@@ -96,7 +96,7 @@ int audit_alignment(const std::filesystem::path& file, bool json) {
 
 void add_alignment(CLI::App& app, int& exit) {
   CLI::App* command = app.add_subcommand("alignment", "Audit a design alignment (LandXML, DB TRA/GRA), or convert it");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<AlignmentOptions>();
   command->add_option("file", options->file.path, "LandXML (.xml) or DB TRA (.tra)")->required();
   command->add_option("--gradients", options->file.gradients, "DB GRA file with the heights of a TRA");
   command->add_option("--stationing", options->file.stationing, "TRA of the stationing line that the GRA refers to");

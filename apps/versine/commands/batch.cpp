@@ -23,8 +23,8 @@ namespace versine::cli {
 namespace {
 using batch::Exit;
 
-/// Options of all verbs; each declares those that it has.
-struct Options {
+/// BatchOptions of all verbs; each declares those that it has.
+struct BatchOptions {
   std::string store, manifest, inputs, config, out, catalogue, track;
   std::optional<int> shard, shards;
   int threads = 0;
@@ -68,7 +68,7 @@ int told(const batch::Failure& failure) {
   return exit_code(failure.exit);
 }
 
-batch::Outcome<batch::Store> open_store(const Options& o, bool make) {
+batch::Outcome<batch::Store> open_store(const BatchOptions& o, bool make) {
   const std::string folder = o.store.empty() ? environment({"VERSINE_STORE"}).value_or("") : o.store;
   if (folder.empty()) {
     return batch::failure(Exit::usage, {.field = "--store",
@@ -83,7 +83,7 @@ struct Opened {
   batch::Store store;
   batch::Manifest manifest;
 };
-batch::Outcome<Opened> open_manifest(const Options& o) {
+batch::Outcome<Opened> open_manifest(const BatchOptions& o) {
   auto store = open_store(o, false);
   if (!store) return tl::unexpected(store.error());
   auto m =
@@ -93,7 +93,7 @@ batch::Outcome<Opened> open_manifest(const Options& o) {
 }
 
 /// The shard from the command line, else from Versine's variables, else from the engine that started this process.
-batch::Selection selection(const Options& o, const batch::Manifest& m) {
+batch::Selection selection(const BatchOptions& o, const batch::Manifest& m) {
   batch::Selection s{{}, o.missing};
   auto index =
       o.shard
@@ -114,7 +114,7 @@ int attempt() {
   return number_in({"AWS_BATCH_JOB_ATTEMPT"}).value_or(1);
 }
 
-int plan(const Options& o) {
+int plan(const BatchOptions& o) {
   auto store = open_store(o, true);
   if (!store) return told(store.error());
   TerminalProgress progress(o.quiet);
@@ -160,7 +160,7 @@ bool any_rejected(const Opened& opened, const batch::Selection& selection) {
   return false;
 }
 
-int run(const Options& o) {
+int run(const BatchOptions& o) {
 #ifdef SIGXFSZ
   std::signal(SIGXFSZ, SIG_IGN);  // a file-size limit comes out as a failed write: 75, not a crash
 #endif
@@ -187,7 +187,7 @@ int run(const Options& o) {
   return exit_code(batch::after_attempts(exit, attempt()));
 }
 
-int status(const Options& o) {
+int status(const BatchOptions& o) {
   const auto opened = open_manifest(o);
   if (!opened) return told(opened.error());
   const auto s = batch::status(opened->store, opened->manifest);
@@ -220,7 +220,7 @@ int status(const Options& o) {
   return exit_code(s->exit());
 }
 
-int merge(const Options& o) {
+int merge(const BatchOptions& o) {
   const auto opened = open_manifest(o);
   if (!opened) return told(opened.error());
   std::error_code code;
@@ -237,7 +237,7 @@ int merge(const Options& o) {
   return exit_code(Exit::done);
 }
 
-int verify(const Options& o) {
+int verify(const BatchOptions& o) {
   const auto store = open_store(o, false);
   if (!store) return told(store.error());
   const auto v = batch::verify(*store);
@@ -247,7 +247,7 @@ int verify(const Options& o) {
   return exit_code(v->withdrawn.empty() ? Exit::done : Exit::incomplete);
 }
 
-int gc(const Options& o) {
+int gc(const BatchOptions& o) {
   const auto store = open_store(o, false);
   if (!store) return told(store.error());
   const auto c = batch::collect_garbage(*store, o.older);
@@ -258,7 +258,7 @@ int gc(const Options& o) {
   return exit_code(Exit::done);
 }
 
-int passes(const Options& o) {
+int passes(const BatchOptions& o) {
   batch::PassQuery query{o.track, o.at, {}, {}, o.smallest_probability};
   if (o.from) query.from = Time::from_seconds(*o.from);
   if (o.to) query.to = Time::from_seconds(*o.to);
@@ -289,10 +289,10 @@ int passes(const Options& o) {
   return exit_code(Exit::done);
 }
 
-using Verb = int (*)(const Options&);
+using Verb = int (*)(const BatchOptions&);
 
-CLI::App* add_verb(CLI::App& batch, const std::shared_ptr<Options>& o, int& exit, const char* name, const char* help,
-                   Verb verb) {
+CLI::App* add_verb(CLI::App& batch, const std::shared_ptr<BatchOptions>& o, int& exit, const char* name,
+                   const char* help, Verb verb) {
   auto* c = batch.add_subcommand(name, help);
   c->add_flag("--quiet", o->quiet, "Print nothing but errors");
   c->callback([o, &exit, verb] {
@@ -313,7 +313,7 @@ CLI::App* add_verb(CLI::App& batch, const std::shared_ptr<Options>& o, int& exit
 void add_batch(CLI::App& app, int& exit) {
   auto* batch = app.add_subcommand("batch", "Georeference a fleet: work units that any engine can run and repeat");
   batch->require_subcommand(1);
-  const auto o = std::make_shared<Options>();
+  const auto o = std::make_shared<BatchOptions>();
   const auto store = [o](CLI::App* c) { c->add_option("--store", o->store, "Folder of the results (VERSINE_STORE)"); };
   const auto manifest = [o, store](CLI::App* c) {
     store(c);

@@ -9,13 +9,13 @@
 namespace versine::cli {
 
 namespace {
-struct Options {
+struct CheckOptions {
   std::string job;
   std::vector<std::string> set;
   bool json = false;
 };
 
-int check(const Options& options) {
+int check(const CheckOptions& options) {
   const auto kind = app::job_kind_of(options.job);
   if (!kind) return report(kind.error());
   const auto lines = (*kind)->check(options.job, options.set);
@@ -39,7 +39,7 @@ int check(const Options& options) {
 
 void add_check(CLI::App& app, int& exit) {
   auto* command = app.add_subcommand("check", "Validate a job file and what it names, without running it");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CheckOptions>();
   command->add_option("job", options->job, "Job file (TOML)")->required();
   command->add_option("--set", options->set, "Override a key of the job")->type_name("KEY=VALUE")->take_all();
   command->add_flag("--json", options->json, "Print the outcome as JSON");

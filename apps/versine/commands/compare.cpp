@@ -12,7 +12,7 @@
 namespace versine::cli {
 
 namespace {
-struct Options {
+struct CompareOptions {
   std::string trajectory, reference;
   double margin_s = 0.0;
   bool json = false;
@@ -27,7 +27,7 @@ Expected<geodesy::Trajectory> load(const std::string& name) {
   return std::move(read->series);
 }
 
-int compare(const Options& o) {
+int compare(const CompareOptions& o) {
   const auto trajectory = load(o.trajectory);
   if (!trajectory) return report(trajectory.error());
   const auto reference = load(o.reference);
@@ -64,7 +64,7 @@ int compare(const Options& o) {
 void add_compare(CLI::App& app, int& exit) {
   auto* command =
       app.add_subcommand("compare", "Compare a trajectory with another run's or with the simulator's truth");
-  auto o = std::make_shared<Options>();
+  auto o = std::make_shared<CompareOptions>();
   command->add_option("trajectory", o->trajectory, "Result folder or trajectory file (.h5, .csv)")->required();
   command->add_option("reference", o->reference, "Result folder or trajectory file to compare with")->required();
   command->add_option("--margin", o->margin_s, "Leave out this many seconds at both ends")

@@ -16,7 +16,7 @@ namespace versine::cli {
 
 namespace {
 
-struct Options {
+struct NetworkOptions {
   io::NetworkFile file;
   std::string geojson;
   bool quiet = false, json = false;
@@ -50,7 +50,7 @@ std::string summary_json(const network::Network& n, const network::MapCheck& c,
 }
 
 /// Counts by kind, then every finding with its place.
-int check_map(const Options& o) {
+int check_map(const NetworkOptions& o) {
   const auto source = io::read_network(o.file);
   if (!source) return report(source.error());
   const auto n = network::build(*source);
@@ -85,7 +85,7 @@ void add_network(CLI::App& app, int& exit) {
   auto* command = app.add_subcommand("network", "Railway maps");
   command->require_subcommand(1);
   auto* sub = command->add_subcommand("check", "List what is doubtful in a map");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<NetworkOptions>();
   sub->add_option("file", options->file.path, "Map: GeoPackage, GeoJSON, Shapefile, OpenStreetMap")->required();
   sub->add_option("--layer", options->file.layer, "Layer of the tracks");
   sub->add_option("--crs", options->file.source_crs, "CRS of the file, when it does not tell it");

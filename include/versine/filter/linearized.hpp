@@ -23,4 +23,8 @@ struct Linearized {
   [[nodiscard]] int rows() const { return static_cast<int>(z.size()); }
 };
 
+/// Makes the rows uncorrelated and of unit variance, by the Cholesky factor of R; R is left as it is. False when R is
+/// not positive definite: the measurement is then of no use.
+[[nodiscard]] bool whiten(Linearized& l);
+
 }  // namespace versine::filter

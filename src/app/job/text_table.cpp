@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
+#include "versine/core/numbers.hpp"
 #include "versine/io/line_reader.hpp"
 
 namespace versine::app {
@@ -65,7 +65,6 @@ std::optional<std::size_t> TextTable::find(std::string_view column) const {
 }
 
 double TextTable::number(const std::vector<std::string>& row, std::optional<std::size_t> column, char point) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   if (!column || row[*column].empty()) return nan;
   std::string text = row[*column];
   std::replace(text.begin(), text.end(), point, '.');

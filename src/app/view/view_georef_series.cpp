@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "job/text_table.hpp"
+#include "versine/core/numbers.hpp"
 #include "versine/core/units.hpp"
 #include "view_map.hpp"
 
@@ -18,8 +19,6 @@ using json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Values of one column of a table, and of the column with its sigma ("" for none), under a name of their own.
 struct Wanted {

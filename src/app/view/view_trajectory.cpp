@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 
 #include "versine/core/calendar.hpp"
+#include "versine/core/numbers.hpp"
 #include "versine/core/units.hpp"
 #include "versine/geodesy/attitude.hpp"
 #include "versine/geodesy/projection.hpp"
@@ -19,8 +19,6 @@ using json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 struct TrajectoryView {
   std::string text;
