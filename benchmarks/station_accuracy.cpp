@@ -6,8 +6,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <random>
 
 #include "versine/app/compare.hpp"
+#include "versine/app/felt_up.hpp"
 #include "versine/app/simulate.hpp"
 #include "versine/app/survey_config.hpp"
 #include "versine/fusion/aided_ins.hpp"
@@ -48,6 +50,23 @@ app::StationingOutcome stations_of(const simulation::SimulatedRecording& r, cons
   SilentProgress progress;
   return app::compute_landmarks(r.stationings, *stationing::ControlNetwork::create(r.control_points),
                                 geodesy::LocalFrame(r.origin), job, progress);
+}
+
+/// Stands of the scenario without its IMU's recording: what its accelerometers would feel.
+void feel_up(simulation::SimulatedRecording& r, const simulation::World& world, const sensors::TriadErrors& a,
+             std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  const auto draw = [&](double sigma) -> Eigen::Vector3d {
+    return sigma * Eigen::Vector3d(normal(random), normal(random), normal(random));
+  };
+  const Eigen::Vector3d bias = draw(a.bias / units::standard_gravity);
+  for (auto& s : r.stationings) {
+    const double t = 0.5 * ((*s.from - world.start).seconds() + (*s.to - world.start).seconds());
+    const double sigma = app::felt_up_sigma(a, (*s.to - *s.from).seconds());
+    const Eigen::Vector3d up = world.C_lv(t).transpose() * -Eigen::Vector3d::UnitZ();
+    s.felt_up = stationing::FeltUp{(up + bias + draw(sigma)).normalized(), sigma};
+  }
 }
 
 /// What all stations of all seeds add up to.
@@ -133,7 +152,9 @@ Tally stationing_table(const Program& p, int targets, double blunder, int seeds)
     simulation::SimulatedRecording r;
     r.origin = p.world->frame.origin();
     simulation::observe_total_station(*p.world, config.total_station, static_cast<std::uint64_t>(5000 + seed), r);
-    const auto o = stations_of(r, job_of(p, config, r).total_station);
+    const app::SurveyConfig job = job_of(p, config, r);
+    feel_up(r, *p.world, job.estimator.imu_errors.accelerometer, static_cast<std::uint64_t>(7000 + seed));
+    const auto o = stations_of(r, job.total_station);
     for (const auto& s : o.run.stations) tally.add(s, *p.world, config.total_station);
     tally.count_faults(o, r.truth);
   }
@@ -163,8 +184,9 @@ void survey_table(const Program& p, int seeds) {
   SilentProgress progress;
   SilentLog log;
   for (int seed = 0; seed < seeds; ++seed) {
-    const auto r = simulation::observe(*p.world, static_cast<std::uint64_t>(9000 + seed));
+    auto r = simulation::observe(*p.world, static_cast<std::uint64_t>(9000 + seed));
     const app::SurveyConfig job = job_of(p, p.config, r);
+    app::feel_up(r.stationings, r.imu, job.estimator.imu_errors.accelerometer);
     auto from_readings = stations_of(r, job.total_station).landmarks;
     auto bare = from_readings;
     for (auto& l : bare) l.q_ns.reset();

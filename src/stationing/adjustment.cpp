@@ -40,22 +40,24 @@ struct TargetResidual {
   }
 };
 
-/// A levelled instrument: the plumb line has no component across the standing axis.
-struct TiltResidual {
+/// The plumb line has no component across the direction that is told to be up.
+struct PlumbResidual {
   const Pose& pose;
-  double sigma;
+  const Plumb& plumb;
   template <class T>
   bool operator()(const T* correction, T* residual) const {
     const T turned[6] = {T(0.0), T(0.0), T(0.0), correction[3], correction[4], correction[5]};
     const Vector3<T> up = in_instrument(pose, Eigen::Vector3d(pose.position + up_at(pose.position)), turned);
-    residual[0] = up(0) / sigma;
-    residual[1] = up(1) / sigma;
+    const Eigen::Vector3d x = plumb.up_s.cross(Eigen::Vector3d::UnitX()).normalized().cross(plumb.up_s);
+    const Eigen::Vector3d y = plumb.up_s.cross(x);
+    residual[0] = up.dot(x.template cast<T>()) / plumb.sigma;
+    residual[1] = up.dot(y.template cast<T>()) / plumb.sigma;
     return true;
   }
 };
 
 using TargetCost = ceres::AutoDiffCostFunction<TargetResidual, 3, 6, 1>;
-using TiltCost = ceres::AutoDiffCostFunction<TiltResidual, 2, 6>;
+using PlumbCost = ceres::AutoDiffCostFunction<PlumbResidual, 2, 6>;
 
 /// Moves the pose by the solved corrections.
 void apply(const double* correction, Pose& pose) {
@@ -84,16 +86,16 @@ void evaluate(const std::vector<Observation>& observations, const AdjustmentSett
     a.whitened.push_back(residual);
     a.jacobian.push_back(j);
   }
-  if (settings.tilt_sigma) {
+  if (settings.plumb) {
     Eigen::Vector2d residual;
     Eigen::Matrix<double, 2, 6, Eigen::RowMajor> j;
     double* jacobians[1] = {j.data()};
-    TiltCost(new TiltResidual{a.pose, *settings.tilt_sigma}).Evaluate(parameters, residual.data(), jacobians);
+    PlumbCost(new PlumbResidual{a.pose, *settings.plumb}).Evaluate(parameters, residual.data(), jacobians);
     normal.topLeftCorner<6, 6>() += j.transpose() * j;
     a.squares += residual.squaredNorm();
   }
   const int unknowns = settings.solve_scale ? 7 : 6;
-  a.redundancy = static_cast<int>(3 * observations.size()) + (settings.tilt_sigma ? 2 : 0) - unknowns;
+  a.redundancy = static_cast<int>(3 * observations.size()) + (settings.plumb ? 2 : 0) - unknowns;
   if (!settings.solve_scale) normal(6, 6) = 1.0;
   // Unit diagonal first, so that metres and radians weigh the same in the rank decision.
   const Eigen::Matrix<double, 7, 1> d = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -129,8 +131,8 @@ Adjustment adjust(const std::vector<Observation>& observations, const Pose& star
     problem.AddResidualBlock(new TargetCost(new TargetResidual{o, start}),
                              settings.robust ? new ceres::CauchyLoss(2.5) : nullptr, correction, &a.scale);
   }
-  if (settings.tilt_sigma) {
-    problem.AddResidualBlock(new TiltCost(new TiltResidual{start, *settings.tilt_sigma}), nullptr, correction);
+  if (settings.plumb) {
+    problem.AddResidualBlock(new PlumbCost(new PlumbResidual{start, *settings.plumb}), nullptr, correction);
   }
   if (!settings.solve_scale) problem.SetParameterBlockConstant(&a.scale);
   ceres::Solver::Options options;

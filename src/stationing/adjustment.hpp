@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "versine/stationing/free_station.hpp"
 #include "versine/stationing/start_value.hpp"
 
 /// The least-squares core of one station; free_station.cpp decides what goes in and what to think of the outcome.
@@ -37,7 +38,7 @@ Eigen::Matrix3d line_axes(const Pose& pose, double direction, double zenith);
 
 struct AdjustmentSettings {
   bool solve_scale = false;
-  std::optional<double> tilt_sigma;
+  std::optional<Plumb> plumb;
   bool robust = false;  ///< Cauchy loss on whole targets instead of squares
 };
 

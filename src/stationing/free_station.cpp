@@ -35,6 +35,9 @@ class Solver {
         detectable_(noncentrality_root(options.significance, options.power)) {}
 
   Expected<StationResult> solve() {
+    // A levelled instrument's standing axis is up.
+    if (options_.tilt_sigma) plumb_ = Plumb{.sigma = *options_.tilt_sigma};
+    if (options_.plumb) plumb_ = options_.plumb;
     result_.name = station_.name;
     result_.from = station_.from;
     result_.to = station_.to;
@@ -78,7 +81,7 @@ class Solver {
   void readjust(bool robust) {
     observe_used();
     search_.adjustment = adjust(search_.observations, search_.adjustment.pose, search_.adjustment.scale,
-                                {options_.solve_scale, options_.tilt_sigma, robust});
+                                {options_.solve_scale, plumb_, robust});
     search_.tests.clear();
     if (!search_.adjustment.regular || robust) return;
     for (std::size_t i = 0; i < search_.used.size(); ++i) {
@@ -109,7 +112,7 @@ class Solver {
 
   /// The worst target goes, one at a time, as long as a test fails and enough remain to tell.
   void snoop() {
-    const std::size_t least = options_.tilt_sigma ? 3 : 4;
+    const std::size_t least = plumb_ ? 3 : 4;
     while (search_.used.size() >= least && search_.adjustment.redundancy > 0) {
       const auto worst = std::max_element(search_.tests.begin(), search_.tests.end(),
                                           [](const auto& a, const auto& b) { return a.point_test < b.point_test; });
@@ -185,6 +188,7 @@ class Solver {
   const Instrument& instrument_;
   const FreeStationOptions& options_;
   double critical_, detectable_;
+  std::optional<Plumb> plumb_;
   Search search_;
   StationResult result_;
 };

@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t core = 6, margin = 3;  ///< stations judged together, and those on each side that help
 constexpr std::size_t least_targets = 3;  ///< of a station; in between it may have one less, until another comes back
 constexpr std::size_t unknowns = 7;       ///< of a station: position, theta, scale
+constexpr double shared_turn = 1e-3;      ///< rad, of the plumb lines of one window
 constexpr double weak = 10.0;             ///< m, rad, 1: determines nothing
 
 /// A sighting of one station as the joint adjustment takes it, linear about the station's own solution.
@@ -41,6 +42,17 @@ JointBlock linearize(const Candidate& c, const StationResult& s, const Instrumen
   return b;
 }
 
+/// What up in the instrument's axes tells of its attitude and of the turn that all plumb lines share.
+JointBlock linearize(const Plumb& plumb, const StationResult& s) {
+  const Eigen::Matrix3d C_ms = s.q_ms.toRotationMatrix();
+  const Eigen::Vector3d told = C_ms * plumb.up_s;
+  JointBlock b;
+  b.observed = (up_at(s.position) - told) / plumb.sigma;
+  b.by_pose.middleCols<3>(3) = -geodesy::skew(told) / plumb.sigma;
+  b.by_point = -C_ms * geodesy::skew(plumb.up_s) / plumb.sigma;
+  return b;
+}
+
 struct Critical {
   double sighting, point;
 };
@@ -49,11 +61,11 @@ bool uses(const StationResult& s, const std::string& point) {
   return std::any_of(s.targets.begin(), s.targets.end(), [&](const TargetResult& t) { return t.point == point; });
 }
 
-/// One window: sightings first, coordinates behind them.
+/// One window: sightings first, coordinates behind them, plumb lines at the end.
 class Window {
  public:
-  Window(std::span<const Seen> seen, std::size_t first, std::size_t last, const std::set<std::string>& moved,
-         bool solve_scale)
+  Window(std::span<const Seen> seen, std::span<const SolvedStation> stations, std::size_t first, std::size_t last,
+         const std::set<std::string>& moved, bool solve_scale)
       : first_(first), last_(last) {
     std::vector<JointBlock> blocks;
     const auto poses = static_cast<Eigen::Index>(unknowns * (last - first));
@@ -77,8 +89,16 @@ class Window {
       b.used = !moved.contains(points_[p]->name);
       blocks.push_back(b);
     }
-    const auto columns = poses + static_cast<Eigen::Index>(3 * points_.size());
-    Eigen::VectorXd sigma = Eigen::VectorXd::Constant(columns, weak);
+    const auto turn = poses + static_cast<Eigen::Index>(3 * points_.size());
+    for (std::size_t i = first; i < last; ++i) {
+      if (!stations[i].plumb) continue;
+      blocks.push_back(linearize(*stations[i].plumb, *stations[i].result));
+      blocks.back().pose = static_cast<Eigen::Index>(unknowns * (i - first));
+      blocks.back().point = turn;
+      plumbed_.push_back(i);
+    }
+    Eigen::VectorXd sigma = Eigen::VectorXd::Constant(turn + 3, weak);
+    sigma.tail<3>().setConstant(shared_turn);
     for (Eigen::Index i = unknowns - 1; !solve_scale && i < poses; i += unknowns) sigma[i] = 1e-9;
     window_.emplace(std::move(blocks), sigma);
   }
@@ -99,6 +119,14 @@ class Window {
   /// Decisions on the stations from `from` to `to`.
   void tell(std::size_t from, std::size_t to, JointVerdict& verdict, std::map<std::string, MovedPoint>& moved,
             std::span<const SolvedStation> stations) const {
+    for (std::size_t k = 0; k < plumbed_.size(); ++k) {
+      const std::size_t i = plumbed_[k], block = sightings_.size() + points_.size() + k;
+      if (i < from || i >= to || !window_->blocks()[block].used) continue;
+      const Plumb& told = *stations[i].plumb;
+      const Eigen::Vector3d turn = window_->solution().tail<3>();
+      verdict.plumb[i] = Plumb{geodesy::from_rotation_vector(turn) * told.up_s,
+                               std::hypot(told.sigma, window_->sigma(window_->blocks()[block].point, 3))};
+    }
     for (std::size_t i = 0; i < sightings_.size(); ++i) {
       const Seen& s = *sightings_[i];
       if (s.station < from || s.station >= to) continue;
@@ -132,7 +160,8 @@ class Window {
   }
 
   [[nodiscard]] double limit(std::size_t i, const Critical& c) const {
-    return i < sightings_.size() ? c.sighting : c.point;
+    const bool coordinates = i >= sightings_.size() && i < sightings_.size() + points_.size();
+    return coordinates ? c.point : c.sighting;
   }
   [[nodiscard]] std::size_t point_of(std::size_t sighting) const {
     return (static_cast<std::size_t>(window_->blocks()[sighting].point) - unknowns * (last_ - first_)) / 3;
@@ -150,6 +179,11 @@ class Window {
     return n;
   }
 
+  [[nodiscard]] bool may_go(std::size_t i) const {
+    if (i < sightings_.size()) return used_at(sightings_[i]->station) >= least_targets;
+    return i >= sightings_.size() + points_.size() || seen_by(i - sightings_.size()) >= 2;
+  }
+
   /// The block in use with the largest test, in terms of its critical value, that may go.
   [[nodiscard]] std::optional<std::size_t> failing(const Critical& critical) const {
     std::optional<std::size_t> worst;
@@ -159,8 +193,7 @@ class Window {
       const double test = window_->test(i) / limit(i, critical);
       // Where two explain the same (a point seen once), the sighting is the likelier fault; it comes first here.
       if (!(test > largest * (1.0 + 1e-9))) continue;
-      const bool sighting = i < sightings_.size();
-      if (sighting ? used_at(sightings_[i]->station) < least_targets : seen_by(i - sightings_.size()) < 2) continue;
+      if (!may_go(i)) continue;
       largest = test;
       worst = i;
     }
@@ -170,6 +203,7 @@ class Window {
   std::size_t first_, last_;
   std::vector<const Seen*> sightings_;
   std::vector<const ControlPoint*> points_;
+  std::vector<std::size_t> plumbed_;  ///< stations
   std::optional<JointWindow> window_;
 };
 
@@ -180,6 +214,7 @@ JointVerdict snoop_jointly(std::span<const SolvedStation> stations, const Contro
                            const FreeStationOptions& options) {
   JointVerdict verdict;
   verdict.left_out.resize(stations.size());
+  verdict.plumb.resize(stations.size());
   std::set<std::string> moved_names;
   for (const MovedPoint& m : known) moved_names.insert(m.name);
   std::vector<Seen> seen;
@@ -193,7 +228,9 @@ JointVerdict snoop_jointly(std::span<const SolvedStation> stations, const Contro
         seen.push_back({i, target, c.point, linearize(c, *stations[i].result, instrument)});
         const bool used = uses(*stations[i].result, c.point->name);
         if (!used) alone[i].insert(target);
-        seen.back().block.used = used || moved_names.contains(c.point->name);
+        // With a plumb line the station's own choice is open again: all begin in, but what is wrong by far.
+        const bool again = stations[i].plumb && group == &matching->used;
+        seen.back().block.used = used || again || moved_names.contains(c.point->name);
       }
     }
   }
@@ -203,7 +240,7 @@ JointVerdict snoop_jointly(std::span<const SolvedStation> stations, const Contro
   std::map<std::string, MovedPoint> moved;
   for (std::size_t from = 0; from < stations.size(); from += core) {
     const std::size_t to = std::min(stations.size(), from + core);
-    Window window(seen, from - std::min(from, margin), std::min(stations.size(), to + margin), moved_names,
+    Window window(seen, stations, from - std::min(from, margin), std::min(stations.size(), to + margin), moved_names,
                   options.solve_scale);
     window.snoop(critical);
     window.tell(from, to, verdict, moved, stations);

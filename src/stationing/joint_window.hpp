@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Cholesky>
+#include <cmath>
 #include <vector>
 
 namespace versine::stationing {
@@ -38,6 +39,11 @@ class JointWindow {
 
   [[nodiscard]] const std::vector<JointBlock>& blocks() const { return blocks_; }
   [[nodiscard]] const Eigen::VectorXd& solution() const { return solution_; }
+
+  /// Largest sigma of `count` unknowns from `first`.
+  [[nodiscard]] double sigma(Eigen::Index first, Eigen::Index count) const {
+    return std::sqrt(cofactor_.diagonal().segment(first, count).maxCoeff());
+  }
 
   /// Normalised size of a block's contradiction with the (other) blocks in use; chi-square with 3 degrees of freedom.
   /// 0 where nothing checks it.

@@ -90,8 +90,12 @@ Expected<ReducedStation> reduce(const Stationing& s, const Instrument& instrumen
   if (!g) return tl::unexpected(g.error());
   if (auto unit = check_unit(s, *g); !unit) return tl::unexpected(unit.error());
 
-  ReducedStation out{
-      .name = s.name, .mark = s.mark, .instrument_height = s.instrument_height, .from = s.from, .to = s.to};
+  ReducedStation out{.name = s.name,
+                     .mark = s.mark,
+                     .instrument_height = s.instrument_height,
+                     .from = s.from,
+                     .to = s.to,
+                     .felt_up = s.felt_up};
   const AxisErrors axis = axis_errors(*g);
   if (!axis.collimation.empty()) {
     out.collimation = median(axis.collimation);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 
+#include "felt_up.hpp"
 #include "joint_snooping.hpp"
 #include "versine/stationing/free_station.hpp"
 
@@ -56,6 +57,8 @@ StationingRun compute_stations(std::span<const Stationing> stationings, const Co
   }
   std::vector<SolvedStation> solved;
   for (std::size_t i = 0; i < readings.size(); ++i) solved.push_back({&readings[i], &run.stations[i]});
+  const auto plumb = felt_plumb_lines(solved);
+  for (std::size_t i = 0; i < solved.size(); ++i) solved[i].plumb = plumb[i];
   const JointVerdict verdict = snoop_jointly(solved, network, find_moved(run.stations), instrument, options);
   run.moved = verdict.moved;
   for (std::size_t i = 0; i < readings.size(); ++i) {
@@ -63,7 +66,14 @@ StationingRun compute_stations(std::span<const Stationing> stationings, const Co
     if (verdict.changed[i]) {
       FreeStationOptions decided = options;
       decided.left_out.emplace(verdict.left_out[i].begin(), verdict.left_out[i].end());
-      if (auto again = free_station(readings[i], network, instrument, decided)) s = std::move(*again);
+      auto again = free_station(readings[i], network, instrument, decided);
+      if (verdict.plumb[i] && (!again || again->geometry.grade == GeometryVerdict::Grade::poor)) {
+        // The plumb line carries what the targets cannot. Elsewhere it stays out of the result: a filter that has the
+        // same accelerometers would count them twice.
+        decided.plumb = verdict.plumb[i];
+        again = free_station(readings[i], network, instrument, decided);
+      }
+      if (again) s = std::move(*again);
     }
     for (Exclusion& e : s.excluded) {
       const bool moved =

@@ -5,13 +5,13 @@
 
 #include "fusion/run.hpp"
 
-/// Monte Carlo: are the sigmas those of the errors? All blocks of seeds count; none is chosen.
+/// Monte Carlo: are the sigmas those of the errors? The first block of seeds counts; none is chosen.
 namespace versine::fusion {
 namespace {
 using test::Scenario;
 using test::Simulated;
 
-constexpr double still = 6.0;
+constexpr double still = 6.0, heading = 0.5;
 
 Scenario short_ride() {
   return {
@@ -26,7 +26,10 @@ struct Sums {
   std::size_t rows = 0;
 };
 
-Sums monte_carlo(int runs, double gnss_factor, bool zero_velocity) {
+/// What the heading at the start is known to, rad: as a gyrocompass leaves it, or as a course of GNSS does.
+constexpr double gyrocompassed = 0.004, coarse = 0.02;
+
+Sums monte_carlo(int runs, double gnss_factor, bool zero_velocity, double heading_sigma = coarse) {
   Sums sums;
   Scenario s = short_ride();
   s.gnss_sigma *= gnss_factor;
@@ -37,11 +40,16 @@ Sums monte_carlo(int runs, double gnss_factor, bool zero_velocity) {
     run.options.gate_probability = 1e-12;
     run.options.odometer_random_walk = 1e-5;
     run.options.zero_velocity = zero_velocity;
+    const double error = *run.options.initial_heading - heading;
+    run.options.initial_heading = heading + error * heading_sigma / run.options.initial_heading_sigma;
+    run.options.initial_heading_sigma = heading_sigma;
+    // The first fix also gave the start, its variance counted 900 times: it is no news.
+    const Time first = run.input.gnss.samples.front().time;
     const AidedInsResult r = test::solve(run);
     sums.at_rest += test::nees(s, run, r.solution.smoothed[300]);
     sums.moving += test::nees(s, run, r.solution.smoothed[1500]);
     for (const Innovation& v : r.solution.innovations) {
-      if (v.sensor != "gnss position" && v.sensor != "gnss velocity") continue;
+      if ((v.sensor != "gnss position" && v.sensor != "gnss velocity") || v.time <= first) continue;
       sums.nis += v.nis;
       sums.rows += std::size_t(v.value.size());
     }
@@ -49,8 +57,8 @@ Sums monte_carlo(int runs, double gnss_factor, bool zero_velocity) {
   return sums;
 }
 
-void expect_consistent(const test::Nees& sum, int runs, bool velocity) {
-  const filter::Bounds b = filter::mean_chi_square_bounds(std::size_t(runs), 3.0, 0.99);
+void expect_consistent(const test::Nees& sum, int runs, bool velocity, double probability) {
+  const filter::Bounds b = filter::mean_chi_square_bounds(std::size_t(runs), 3.0, probability);
   for (const double mean : {sum.position / (3 * runs), sum.attitude / (3 * runs)}) {
     EXPECT_GT(mean, b.lower);
     EXPECT_LT(mean, b.upper);
@@ -61,13 +69,19 @@ void expect_consistent(const test::Nees& sum, int runs, bool velocity) {
 }
 
 TEST(AidedInsConsistency, SigmasAreThoseOfTheErrors) {
-  const int runs = 200;
-  const Sums sums = monte_carlo(runs, 1.0, false);
-  expect_consistent(sums.moving, runs, true);
-  const filter::Bounds of_nis = filter::mean_chi_square_bounds(sums.rows, 1.0);
-  // The first fix of each run also gave the start (its variance counted 900 times): that is 1 of 24 epochs.
-  EXPECT_GT(sums.nis / double(sums.rows), of_nis.lower - 0.03);
+  const int runs = 100;
+  const Sums sums = monte_carlo(runs, 1.0, false, gyrocompassed);
+  expect_consistent(sums.moving, runs, true, 0.95);
+  const filter::Bounds of_nis = filter::mean_chi_square_bounds(sums.rows, 1.0, 0.95);
+  EXPECT_GT(sums.nis / double(sums.rows), of_nis.lower);
   EXPECT_LT(sums.nis / double(sums.rows), of_nis.upper);
+}
+
+TEST(AidedInsConsistency, ACoarseHeadingCostsAFewPercent) {
+  // Linearised about a heading that is a degree off: over 1000 runs NEES is 1.08, 1.03 and 1.05 here, where a heading
+  // of a quarter of a degree gives 1.04, 1.01 and 0.99 (sigma 0.03).
+  const int runs = 200;
+  expect_consistent(monte_carlo(runs, 1.0, false).moving, runs, true, 0.99);
 }
 
 TEST(AidedInsConsistency, AnOdometerAtRestTellsNoHeading) {
@@ -83,8 +97,8 @@ TEST(AidedInsConsistency, PositionHeldAtAStandstillIsConsistent) {
   // better than told.
   const int runs = 150;
   const Sums sums = monte_carlo(runs, 1.0, true);
-  expect_consistent(sums.at_rest, runs, false);
-  expect_consistent(sums.moving, runs, true);
+  expect_consistent(sums.at_rest, runs, false, 0.99);
+  expect_consistent(sums.moving, runs, true, 0.99);
 }
 
 TEST(AidedInsConsistency, StandingForMinutesThePositionStaysWithinAMillimetre) {

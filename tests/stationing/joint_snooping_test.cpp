@@ -48,6 +48,16 @@ struct SnoopedSurvey {
       wrong[s.name] = point;
     }
   }
+  /// Accelerometers that lie somehow against the instrument, with a bias, and `sigma` from station to station.
+  void feel_up(double sigma) {
+    const Eigen::Quaterniond q_bs = geodesy::to_quaternion(geodesy::Euler{0.02, -0.03, 1.2});
+    std::normal_distribution<double> noise(0.0, sigma);
+    for (std::size_t i = 0; i < stations.size(); ++i) {
+      const Eigen::Vector3d up_s = truth[i].q_ms.conjugate() * up_at(truth[i].position);
+      const Eigen::Vector3d error(2e-4 + noise(rng), -1e-4 + noise(rng), 0.0);
+      stations[i].felt_up = FeltUp{(q_bs * up_s + error).normalized(), sigma};
+    }
+  }
   [[nodiscard]] StationingRun run() const {
     SilentProgress progress;
     return compute_stations(stations, *ControlNetwork::create(nominal), {}, {}, progress);
@@ -101,6 +111,38 @@ TEST(JointSnooping, EveryBlunderOverFiveMillimetresIsFound) {
     EXPECT_LE(moved, 1u);  // of 40 surveys of 24 points, each tested at 0.01 %
     EXPECT_LT(double(lost) / double(good), 0.005);
     EXPECT_LT(rms.maxCoeff(), 0.5);
+  }
+}
+
+/// Of five back-sights two zenith angles on opposite corners explain each other by a tilt, which accelerometers know.
+TEST(JointSnooping, AccelerometersTellWhichOfTwoZenithAnglesIsWrong) {
+  for (const double size : {5.5e-3, 15e-3}) {
+    std::size_t blunders = 0, found = 0, lost = 0, inside = 0, stations = 0;
+    Eigen::Array3d squares = Eigen::Array3d::Zero();
+    for (unsigned seed = 0; seed < 40; ++seed) {
+      SnoopedSurvey survey(3000 + seed, 5);
+      survey.add_blunders(size);
+      survey.feel_up(10.0 * units::arcsec);
+      const StationingRun run = survey.run();
+      ASSERT_EQ(run.stations.size(), survey.stations.size());
+      for (std::size_t i = 0; i < run.stations.size(); ++i) {
+        const StationResult& s = run.stations[i];
+        const auto it = survey.wrong.find(s.name);
+        blunders += it != survey.wrong.end();
+        if (it != survey.wrong.end()) found += excludes(s, it->second);
+        for (const auto& e : s.excluded) lost += it == survey.wrong.end() || e.point != it->second;
+        const Eigen::Array3d error = s.position - survey.truth[i].position;
+        squares += error.square();
+        for (int k = 0; k < 3; ++k) inside += std::abs(error[k]) < 1.96 * std::sqrt(s.covariance(k, k));
+        stations += 1;
+      }
+    }
+    const Eigen::Array3d rms = 1e3 * (squares / double(stations)).sqrt();
+    std::printf("%.1f mm: %zu of %zu found, %zu good lost, RMS %.2f %.2f %.2f mm, inside %.3f\n", size * 1e3, found,
+                blunders, lost, rms[0], rms[1], rms[2], double(inside) / double(3 * stations));
+    EXPECT_EQ(found, blunders);
+    EXPECT_LT(rms.maxCoeff(), 0.5);
+    EXPECT_NEAR(double(inside) / double(3 * stations), 0.95, 0.02);
   }
 }
 

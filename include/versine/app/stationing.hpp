@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -49,9 +51,11 @@ struct StationingOutcome {
 };
 
 /// From files to stations and landmark updates. A station that cannot be computed is a rejection with its reason, not
-/// the end of the run; the run fails when none can, or when a file cannot be read.
-[[nodiscard]] Expected<StationingOutcome> process_stationing(const StationingProcessing& processing, Progress& progress,
-                                                             Log& log);
+/// the end of the run; the run fails when none can, or when a file cannot be read. `prepare`, when given, adds to the
+/// readings what others know of the stations (feel_up).
+[[nodiscard]] Expected<StationingOutcome> process_stationing(
+    const StationingProcessing& processing, Progress& progress, Log& log,
+    const std::function<void(std::span<stationing::Stationing>)>& prepare = {});
 
 /// The same from values: what a survey of simulated readings calls.
 [[nodiscard]] StationingOutcome compute_landmarks(std::vector<stationing::Stationing> stationings,

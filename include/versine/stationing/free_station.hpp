@@ -13,6 +13,12 @@
 
 namespace versine::stationing {
 
+/// The plumb line as another sensor tells it.
+struct Plumb {
+  Eigen::Vector3d up_s = Eigen::Vector3d::UnitZ();  ///< up in the instrument's axes, length 1
+  double sigma = 0.0;                               ///< rad, each axis
+};
+
 struct FreeStationOptions {
   bool solve_scale = false;          ///< the scale of the distances is an unknown too
   std::optional<double> tilt_sigma;  ///< the instrument is levelled this well, rad; none: it lies as the trolley lies
@@ -24,6 +30,7 @@ struct FreeStationOptions {
   bool identify = true;              ///< targets without or with unknown numbers are found by their coordinates
   /// Indices of targets that contradict the rest, decided elsewhere: these are left out and no other is.
   std::optional<std::vector<std::size_t>> left_out;
+  std::optional<Plumb> plumb;           ///< observed beside the targets
   std::optional<Eigen::Vector3d> near;  ///< roughly where the station is, m-frame; needed when no number is known and
                                         ///< the network repeats itself
 };

@@ -50,12 +50,19 @@ struct Atmosphere {
 };
 
 /// One set-up of the instrument with all that was read there.
+/// Which way is up, as accelerometers on the trolley feel it while it stands.
+struct FeltUp {
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< in the accelerometers' axes, length 1
+  double sigma = 0.0;                             ///< of what differs from station to station, each axis, rad
+};
+
 struct Stationing {
   std::string name;
   std::string mark;                      ///< number of the point it stands over; empty: none, as on a trolley
   double instrument_height = 0.0;        ///< of the instrument's centre above the station's mark, m; 0 on a trolley
   std::optional<Atmosphere> atmosphere;  ///< none: the instrument has corrected the distances itself
   std::optional<Time> from, to;          ///< when the trolley stood, in the recording's time
+  std::optional<FeltUp> felt_up;         ///< of the trolley that carries the instrument
   std::vector<Sighting> sightings;
 };
 

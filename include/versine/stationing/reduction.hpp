@@ -45,6 +45,7 @@ struct ReducedStation {
   std::string mark;  ///< number of the point it stands over; empty: none
   double instrument_height = 0.0;
   std::optional<Time> from, to;
+  std::optional<FeltUp> felt_up;
   std::vector<Target> targets;        ///< in the order in which the points first occur
   std::optional<double> collimation;  ///< found from two faces, rad
   std::optional<double> index_error;  ///< rad

@@ -110,7 +110,8 @@ StationingOutcome compute_landmarks(std::vector<stationing::Stationing> stationi
   return out;
 }
 
-Expected<StationingOutcome> process_stationing(const StationingProcessing& p, Progress& progress, Log& log) {
+Expected<StationingOutcome> process_stationing(const StationingProcessing& p, Progress& progress, Log& log,
+                                               const std::function<void(std::span<stationing::Stationing>)>& prepare) {
   const auto control = read_control(p);
   if (!control) return tl::unexpected(control.error());
   const geodesy::LocalFrame frame((*control)[control->size() / 2].position);
@@ -137,6 +138,7 @@ Expected<StationingOutcome> process_stationing(const StationingProcessing& p, Pr
     warnings.insert(warnings.end(), book->warnings.begin(), book->warnings.end());
   }
   if (auto fine = check_faces(stationings, p); !fine) return tl::unexpected(fine.error());
+  if (prepare) prepare(stationings);
   for (const auto& finding : stationing::check(*network)) warnings.push_back("control list: " + finding.text);
   auto out = compute_landmarks(std::move(stationings), std::move(*network), frame, p, progress);
   out.record.warnings.insert(out.record.warnings.begin(), warnings.begin(), warnings.end());

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "versine/app/felt_up.hpp"
 #include "versine/app/job_run.hpp"
 #include "versine/io/read_recording.hpp"
 #include "versine/sensors/plausibility.hpp"
@@ -100,7 +101,11 @@ Expected<void> solve_total_station(const SurveyConfig& config, SurveyInput& inpu
     if (auto noted = note_files(role, *files, input.files); !noted) return noted;
   }
   SilentLog log;
-  auto solved = process_stationing(t, progress, log);
+  // An instrument that stands beside the track does not lean with the trolley.
+  const bool carried = t.arrangement == StationingProcessing::Arrangement::on_trolley;
+  auto solved = process_stationing(t, progress, log, [&](std::span<stationing::Stationing> stationings) {
+    if (carried) feel_up(stationings, input.imu.series, config.estimator.imu_errors.accelerometer);
+  });
   if (!solved) return tl::unexpected(solved.error());
   input.record.append(std::move(solved->record));
   inertial::StandstillInput seen{.imu = &input.imu.series};
