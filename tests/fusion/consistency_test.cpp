@@ -11,7 +11,7 @@ namespace {
 using test::Scenario;
 using test::Simulated;
 
-constexpr double still = 6.0, heading = 0.5;
+constexpr double still = 6.0, true_heading = 0.5;
 
 Scenario short_ride() {
   return {
@@ -40,8 +40,8 @@ Sums monte_carlo(int runs, double gnss_factor, bool zero_velocity, double headin
     run.options.gate_probability = 1e-12;
     run.options.odometer_random_walk = 1e-5;
     run.options.zero_velocity = zero_velocity;
-    const double error = *run.options.initial_heading - heading;
-    run.options.initial_heading = heading + error * heading_sigma / run.options.initial_heading_sigma;
+    const double error = *run.options.initial_heading - true_heading;
+    run.options.initial_heading = true_heading + error * heading_sigma / run.options.initial_heading_sigma;
     run.options.initial_heading_sigma = heading_sigma;
     // The first fix also gave the start, its variance counted 900 times: it is no news.
     const Time first = run.input.gnss.samples.front().time;
