@@ -1,39 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "versine/io/background_map.hpp"
 
-#include <cpl_vsi.h>
 #include <fmt/format.h>
-#include <gdal_priv.h>
-#include <gdal_utils.h>
 
 #include <atomic>
 #include <cmath>
 #include <mutex>
 #include <vector>
 
+#include "gdal.hpp"
+
 namespace versine::io {
 
 namespace {
 
-using Dataset = std::unique_ptr<GDALDataset, void (*)(GDALDataset*)>;
-
-Dataset owned(GDALDatasetH handle) {
-  return {GDALDataset::FromHandle(handle), [](GDALDataset* d) {
-            if (d != nullptr) GDALClose(GDALDataset::ToHandle(d));
-          }};
-}
-
 /// Errors of GDAL come back as text instead of being printed.
 class Quiet {
  public:
-  Quiet() {
-    CPLErrorReset();
-    CPLPushErrorHandler(CPLQuietErrorHandler);
+  explicit Quiet(const Gdal& gdal) : gdal_(gdal) {
+    gdal_.CPLErrorReset();
+    gdal_.CPLPushErrorHandler(gdal_.CPLQuietErrorHandler);
   }
-  ~Quiet() { CPLPopErrorHandler(); }
+  ~Quiet() { gdal_.CPLPopErrorHandler(); }
   Quiet(const Quiet&) = delete;
   Quiet& operator=(const Quiet&) = delete;
-  [[nodiscard]] static std::string message() { return CPLGetLastErrorMsg(); }
+  [[nodiscard]] std::string message() const { return gdal_.CPLGetLastErrorMsg(); }
+
+ private:
+  const Gdal& gdal_;
 };
 
 Error unusable(const std::filesystem::path& path, std::string found) {
@@ -47,27 +41,34 @@ Error unusable(const std::filesystem::path& path, std::string found) {
 }  // namespace
 
 struct BackgroundMap::Impl {
-  Dataset set{nullptr, nullptr};
+  const Gdal* gdal = nullptr;
+  GdalDataset set;
   std::string name;
   std::mutex mutex;
 };
 
 Expected<BackgroundMap> BackgroundMap::open(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path)) return tl::unexpected(unusable(path, "no such file"));
-  GDALAllRegister();
-  const Quiet quiet;
-  Dataset set = owned(GDALOpenEx(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
+  const auto api = gdal(GdalDrivers::all);
+  if (!api) return tl::unexpected(api.error());
+  const Gdal& g = **api;
+  const Quiet quiet(g);
+  const auto open_as = [&](unsigned kind) {
+    return owned<GdalDataset>(g, g.GDALOpenEx(path.c_str(), kind | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
+  };
+  GdalDataset set = open_as(GDAL_OF_RASTER);
   if (!set) {
-    const Dataset vector =
-        owned(GDALOpenEx(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
-    return tl::unexpected(unusable(path, vector ? "a map of lines, not a picture" : "no picture: " + Quiet::message()));
+    const GdalDataset vector = open_as(GDAL_OF_VECTOR);
+    return tl::unexpected(unusable(path, vector ? "a map of lines, not a picture" : "no picture: " + quiet.message()));
   }
   std::array<double, 6> transform{};
-  const bool placed = set->GetGeoTransform(transform.data()) == CE_None && set->GetSpatialRef() != nullptr;
-  if (!placed || set->GetRasterCount() == 0) {
+  const bool placed =
+      g.GDALGetGeoTransform(set.get(), transform.data()) == CE_None && g.GDALGetSpatialRef(set.get()) != nullptr;
+  if (!placed || g.GDALGetRasterCount(set.get()) == 0) {
     return tl::unexpected(unusable(path, "a picture that does not say where it lies"));
   }
   auto impl = std::make_unique<Impl>();
+  impl->gdal = &g;
   impl->set = std::move(set);
   impl->name = path.filename().string();
   return BackgroundMap(std::move(impl));
@@ -89,26 +90,27 @@ Expected<std::string> BackgroundMap::png(const std::string& crs, const std::arra
   arguments.push_back(nullptr);
 
   const std::scoped_lock lock(impl_->mutex);
-  const Quiet quiet;
-  GDALWarpAppOptions* options = GDALWarpAppOptionsNew(arguments.data(), nullptr);
-  GDALDatasetH source = GDALDataset::ToHandle(impl_->set.get());
-  const Dataset warped = owned(GDALWarp("", nullptr, 1, &source, options, nullptr));
-  GDALWarpAppOptionsFree(options);
-  if (!warped) return refuse(Quiet::message());
+  const Gdal& g = *impl_->gdal;
+  const Quiet quiet(g);
+  GDALWarpAppOptions* options = g.GDALWarpAppOptionsNew(arguments.data(), nullptr);
+  GDALDatasetH source = impl_->set.get();
+  const auto warped = owned<GdalDataset>(g, g.GDALWarp("", nullptr, 1, &source, options, nullptr));
+  g.GDALWarpAppOptionsFree(options);
+  if (!warped) return refuse(quiet.message());
   static std::atomic<int> count{0};
   const std::string file = fmt::format("/vsimem/versine-background-{}.png", ++count);
   {
-    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("PNG");
+    GDALDriverH driver = g.GDALGetDriverByName("PNG");
     if (driver == nullptr) return refuse("a GDAL that writes no PNG");
-    const Dataset written =
-        owned(GDALDataset::ToHandle(driver->CreateCopy(file.c_str(), warped.get(), FALSE, nullptr, nullptr, nullptr)));
-    if (!written) return refuse(Quiet::message());
+    const auto written =
+        owned<GdalDataset>(g, g.GDALCreateCopy(driver, file.c_str(), warped.get(), FALSE, nullptr, nullptr, nullptr));
+    if (!written) return refuse(quiet.message());
   }
   vsi_l_offset size = 0;
-  GByte* bytes = VSIGetMemFileBuffer(file.c_str(), &size, TRUE);
+  GByte* bytes = g.VSIGetMemFileBuffer(file.c_str(), &size, TRUE);
   if (bytes == nullptr) return refuse("no picture");
   std::string out(reinterpret_cast<const char*>(bytes), size);
-  VSIFree(bytes);
+  g.VSIFree(bytes);
   return out;
 }
 

@@ -1,34 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "versine/io/geometry_gis.hpp"
 
-#include <gdal_priv.h>
-#include <ogrsf_frmts.h>
-
 #include <cmath>
-#include <memory>
 
+#include "gdal.hpp"
 #include "versine/geodesy/projection.hpp"
 
 namespace versine::io {
 namespace {
 
-using Dataset = std::unique_ptr<GDALDataset, void (*)(GDALDataset*)>;
-using Feature = std::unique_ptr<OGRFeature>;
-
-Expected<void> refuse(const std::filesystem::path& path) {
+Expected<void> refuse(const Gdal& gdal, const std::filesystem::path& path) {
   return fail({.file = path.string(),
                .found = "a file that cannot be written",
                .expected = "a writable folder with space",
-               .advice = CPLGetLastErrorMsg()});
+               .advice = gdal.CPLGetLastErrorMsg()});
 }
 
-Dataset create(const char* driver_name, const std::filesystem::path& path) {
-  GDALAllRegister();
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(driver_name);
-  GDALDataset* set = driver == nullptr ? nullptr : driver->Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr);
-  return {set, [](GDALDataset* d) {
-            if (d != nullptr) GDALClose(d);
-          }};
+/// A layer that is being written. Owned by its file.
+struct Layer {
+  const Gdal& gis;
+  OGRLayerH handle;
+
+  [[nodiscard]] bool add_field(const std::string& name, OGRFieldType type) const {
+    return add_gdal_field(gis, handle, name.c_str(), type);
+  }
+  [[nodiscard]] GdalFeature feature() const {
+    return owned<GdalFeature>(gis, gis.OGR_F_Create(gis.OGR_L_GetLayerDefn(handle)));
+  }
+  [[nodiscard]] bool put(const GdalFeature& f) const { return gis.OGR_L_CreateFeature(handle, f.get()) == OGRERR_NONE; }
+};
+
+GdalGeometry point_at(const Gdal& gdal, double e, double n) {
+  auto point = owned<GdalGeometry>(gdal, gdal.OGR_G_CreateGeometry(wkbPoint));
+  gdal.OGR_G_AddPoint_2D(point.get(), e, n);
+  return point;
 }
 
 /// A line of the geometry: its columns by stem ("axis", "left", "right").
@@ -53,11 +58,11 @@ std::size_t stride_of(const track::Geometry& g, const GisOptions& o) {
 
 /// Line strings of a line, one a piece between gaps; `use` gets each.
 template <class Use>
-bool each_piece(const track::Geometry& g, const Line& line, std::size_t stride, const Use& use) {
-  OGRLineString piece;
+bool each_piece(const Gdal& gdal, const track::Geometry& g, const Line& line, std::size_t stride, const Use& use) {
+  const auto piece = owned<GdalGeometry>(gdal, gdal.OGR_G_CreateGeometry(wkbLineString));
   const auto finish = [&] {
-    const bool good = piece.getNumPoints() < 2 || use(piece);
-    piece.empty();
+    const bool good = gdal.OGR_G_GetPointCount(piece.get()) < 2 || use(piece.get());
+    gdal.OGR_G_Empty(piece.get());
     return good;
   };
   for (std::size_t i = 0; i < g.size(); ++i) {
@@ -65,29 +70,25 @@ bool each_piece(const track::Geometry& g, const Line& line, std::size_t stride, 
     if (i % stride != 0 && !last) continue;
     const double e = line.easting->value[i], n = line.northing->value[i], h = line.height->value[i];
     if (std::isfinite(e) && std::isfinite(h))
-      piece.addPoint(e, n, h);
+      gdal.OGR_G_AddPoint(piece.get(), e, n, h);
     else if (!finish())
       return false;
   }
   return finish();
 }
 
-bool add_field(OGRLayer& layer, const std::string& name, OGRFieldType type) {
-  OGRFieldDefn definition(name.c_str(), type);
-  return layer.CreateField(&definition) == OGRERR_NONE;
-}
-
-bool write_lines(GDALDataset& set, OGRSpatialReference& crs, const track::Geometry& g, std::size_t stride) {
+bool write_lines(const Gdal& gdal, GDALDatasetH set, OGRSpatialReferenceH crs, const track::Geometry& g,
+                 std::size_t stride) {
   for (const char* layer_name : {"axis", "rails"}) {
-    OGRLayer* layer = set.CreateLayer(layer_name, &crs, wkbLineString25D, nullptr);
-    if (layer == nullptr || !add_field(*layer, "rail", OFTString)) return false;
+    const Layer layer{gdal, gdal.GDALDatasetCreateLayer(set, layer_name, crs, wkbLineString25D, nullptr)};
+    if (layer.handle == nullptr || !layer.add_field("rail", OFTString)) return false;
     for (const Line& line : lines_of(g)) {
       if ((std::string_view(line.name) == "axis") != (std::string_view(layer_name) == "axis")) continue;
-      const bool good = each_piece(g, line, stride, [&](const OGRLineString& piece) {
-        const Feature f(OGRFeature::CreateFeature(layer->GetLayerDefn()));
-        f->SetField(0, line.name);
-        f->SetGeometry(&piece);
-        return layer->CreateFeature(f.get()) == OGRERR_NONE;
+      const bool good = each_piece(gdal, g, line, stride, [&](OGRGeometryH piece) {
+        const GdalFeature f = layer.feature();
+        gdal.OGR_F_SetFieldString(f.get(), 0, line.name);
+        gdal.OGR_F_SetGeometry(f.get(), piece);
+        return layer.put(f);
       });
       if (!good) return false;
     }
@@ -102,41 +103,44 @@ bool wanted(const track::Column& c) {
          n.ends_with("_d1") || n == "curvature" || n == "gradient";
 }
 
-bool write_points(GDALDataset& set, OGRSpatialReference& crs, const track::Geometry& g, std::size_t stride) {
+bool write_points(const Gdal& gdal, GDALDatasetH set, OGRSpatialReferenceH crs, const track::Geometry& g,
+                  std::size_t stride) {
   const auto lines = lines_of(g);
   if (lines.empty()) return true;
   const Line& axis = lines.front();
-  OGRLayer* layer = set.CreateLayer("points", &crs, wkbPoint25D, nullptr);
-  if (layer == nullptr || !add_field(*layer, "mileage_m", OFTReal) || !add_field(*layer, "flags", OFTInteger))
+  const Layer layer{gdal, gdal.GDALDatasetCreateLayer(set, "points", crs, wkbPoint25D, nullptr)};
+  if (layer.handle == nullptr || !layer.add_field("mileage_m", OFTReal) || !layer.add_field("flags", OFTInteger))
     return false;
   std::vector<const track::Column*> columns;
   for (const track::Column& c : g.columns) {
-    if (wanted(c) && add_field(*layer, c.heading(), OFTReal)) columns.push_back(&c);
+    if (wanted(c) && layer.add_field(c.heading(), OFTReal)) columns.push_back(&c);
   }
-  const Feature f(OGRFeature::CreateFeature(layer->GetLayerDefn()));
+  const GdalFeature f = layer.feature();
+  const auto point = owned<GdalGeometry>(gdal, gdal.OGR_G_CreateGeometry(wkbPoint));
   for (std::size_t i = 0; i < g.size(); i += stride) {
     const double e = axis.easting->value[i], n = axis.northing->value[i], h = axis.height->value[i];
     if (!std::isfinite(e)) continue;
-    f->SetFID(OGRNullFID);
-    f->SetField(0, g.posted_at(g.mileage[i]));
-    f->SetField(1, static_cast<int>(g.flags[i]));
+    gdal.OGR_F_SetFID(f.get(), OGRNullFID);
+    gdal.OGR_F_SetFieldDouble(f.get(), 0, g.posted_at(g.mileage[i]));
+    gdal.OGR_F_SetFieldInteger(f.get(), 1, static_cast<int>(g.flags[i]));
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const double v = columns[k]->value[i] / columns[k]->scale;
       if (std::isfinite(v))
-        f->SetField(static_cast<int>(k) + 2, v);
+        gdal.OGR_F_SetFieldDouble(f.get(), static_cast<int>(k) + 2, v);
       else
-        f->SetFieldNull(static_cast<int>(k) + 2);
+        gdal.OGR_F_SetFieldNull(f.get(), static_cast<int>(k) + 2);
     }
-    OGRPoint point(e, n, h);
-    f->SetGeometry(&point);
-    if (layer->CreateFeature(f.get()) != OGRERR_NONE) return false;
+    gdal.OGR_G_SetPoint(point.get(), 0, e, n, h);
+    gdal.OGR_F_SetGeometry(f.get(), point.get());
+    if (!layer.put(f)) return false;
   }
   return true;
 }
 
-bool write_exceedances(GDALDataset& set, OGRSpatialReference& crs, const track::Geometry& g, const track::Quality& q) {
-  OGRLayer* layer = set.CreateLayer("exceedances", &crs, wkbPoint, nullptr);
-  if (layer == nullptr) return false;
+bool write_exceedances(const Gdal& gdal, GDALDatasetH set, OGRSpatialReferenceH crs, const track::Geometry& g,
+                       const track::Quality& q) {
+  const Layer layer{gdal, gdal.GDALDatasetCreateLayer(set, "exceedances", crs, wkbPoint, nullptr)};
+  if (layer.handle == nullptr) return false;
   for (const auto& [name, type] :
        std::initializer_list<std::pair<const char*, OGRFieldType>>{{"column", OFTString},
                                                                    {"level", OFTString},
@@ -148,25 +152,25 @@ bool write_exceedances(GDALDataset& set, OGRSpatialReference& crs, const track::
                                                                    {"start_m", OFTReal},
                                                                    {"end_m", OFTReal},
                                                                    {"peak_m", OFTReal}}) {
-    if (!add_field(*layer, name, type)) return false;
+    if (!layer.add_field(name, type)) return false;
   }
   const auto lines = lines_of(g);
   for (const track::Exceedance& x : q.exceedances) {
     const track::Column& c = g.at(x.column);
-    const Feature f(OGRFeature::CreateFeature(layer->GetLayerDefn()));
-    f->SetField(0, x.column.c_str());
-    f->SetField(1, x.level.c_str());
-    f->SetField(2, c.unit.c_str());
+    const GdalFeature f = layer.feature();
+    gdal.OGR_F_SetFieldString(f.get(), 0, x.column.c_str());
+    gdal.OGR_F_SetFieldString(f.get(), 1, x.level.c_str());
+    gdal.OGR_F_SetFieldString(f.get(), 2, c.unit.c_str());
     const double numbers[] = {x.value / c.scale,    x.limit / c.scale,  x.sigma / c.scale,  x.probability,
                               g.posted_at(x.start), g.posted_at(x.end), g.posted_at(x.peak)};
     for (int k = 0; k < 7; ++k) {
-      if (std::isfinite(numbers[k])) f->SetField(k + 3, numbers[k]);
+      if (std::isfinite(numbers[k])) gdal.OGR_F_SetFieldDouble(f.get(), k + 3, numbers[k]);
     }
     if (!lines.empty() && std::isfinite(lines.front().easting->value[x.index])) {
-      OGRPoint point(lines.front().easting->value[x.index], lines.front().northing->value[x.index]);
-      f->SetGeometry(&point);
+      const auto peak = point_at(gdal, lines.front().easting->value[x.index], lines.front().northing->value[x.index]);
+      gdal.OGR_F_SetGeometry(f.get(), peak.get());
     }
-    if (layer->CreateFeature(f.get()) != OGRERR_NONE) return false;
+    if (!layer.put(f)) return false;
   }
   return true;
 }
@@ -175,50 +179,53 @@ bool write_exceedances(GDALDataset& set, OGRSpatialReference& crs, const track::
 
 Expected<void> write_geometry_gpkg(const std::filesystem::path& path, const track::Geometry& g,
                                    const track::Quality* quality, const GisOptions& options) {
-  Dataset set = create("GPKG", path);
-  if (set == nullptr) return refuse(path);
-  OGRSpatialReference crs;
+  const auto api = gdal(GdalDrivers::geopackage);
+  if (!api) return tl::unexpected(api.error());
+  const Gdal& gis = **api;
+  const GdalDataset set = create_gdal_file(gis, "GPKG", path.c_str());
+  if (set == nullptr) return refuse(gis, path);
   const auto projection = geodesy::Projection::create(g.crs);
   if (!projection) return tl::unexpected(projection.error());
-  if (g.own_grid)
-    crs.SetLocalCS("project grid");
-  else
-    crs.SetFromUserInput(projection->wkt().c_str());
-  crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  const GdalCrs crs = make_gdal_crs(gis, g.own_grid ? nullptr : projection->wkt().c_str());
   const std::size_t stride = stride_of(g, options);
-  const bool good = set->StartTransaction() == OGRERR_NONE && write_lines(*set, crs, g, stride) &&
-                    write_points(*set, crs, g, stride) &&
-                    (quality == nullptr || write_exceedances(*set, crs, g, *quality)) &&
-                    set->CommitTransaction() == OGRERR_NONE;
-  if (!good) return refuse(path);
+  const bool good = gis.GDALDatasetStartTransaction(set.get(), FALSE) == OGRERR_NONE &&
+                    write_lines(gis, set.get(), crs.get(), g, stride) &&
+                    write_points(gis, set.get(), crs.get(), g, stride) &&
+                    (quality == nullptr || write_exceedances(gis, set.get(), crs.get(), g, *quality)) &&
+                    gis.GDALDatasetCommitTransaction(set.get()) == OGRERR_NONE;
+  if (!good) return refuse(gis, path);
   return {};
 }
 
 Expected<void> write_geometry_dxf(const std::filesystem::path& path, const track::Geometry& g,
                                   const track::Quality* quality, const GisOptions& options) {
-  Dataset set = create("DXF", path);
-  OGRLayer* layer = set == nullptr ? nullptr : set->CreateLayer("entities", nullptr, wkbUnknown, nullptr);
-  if (layer == nullptr) return refuse(path);
-  const int name = layer->GetLayerDefn()->GetFieldIndex("Layer");
-  const auto put = [&](const char* where, const OGRGeometry& shape) {
-    const Feature f(OGRFeature::CreateFeature(layer->GetLayerDefn()));
-    f->SetField(name, where);
-    f->SetGeometry(&shape);
-    return layer->CreateFeature(f.get()) == OGRERR_NONE;
+  const auto api = gdal(GdalDrivers::dxf);
+  if (!api) return tl::unexpected(api.error());
+  const Gdal& gis = **api;
+  const GdalDataset set = create_gdal_file(gis, "DXF", path.c_str());
+  const Layer layer{
+      gis, set == nullptr ? nullptr : gis.GDALDatasetCreateLayer(set.get(), "entities", nullptr, wkbUnknown, nullptr)};
+  if (layer.handle == nullptr) return refuse(gis, path);
+  const int name = gis.OGR_FD_GetFieldIndex(gis.OGR_L_GetLayerDefn(layer.handle), "Layer");
+  const auto put = [&](const char* where, OGRGeometryH shape) {
+    const GdalFeature f = layer.feature();
+    gis.OGR_F_SetFieldString(f.get(), name, where);
+    gis.OGR_F_SetGeometry(f.get(), shape);
+    return layer.put(f);
   };
   for (const Line& line : lines_of(g)) {
     const std::string where = std::string_view(line.name) == "axis"   ? "AXIS"
                               : std::string_view(line.name) == "left" ? "RAIL_LEFT"
                                                                       : "RAIL_RIGHT";
-    const bool good = each_piece(g, line, stride_of(g, options),
-                                 [&](const OGRLineString& piece) { return put(where.c_str(), piece); });
-    if (!good) return refuse(path);
+    const bool good =
+        each_piece(gis, g, line, stride_of(g, options), [&](OGRGeometryH piece) { return put(where.c_str(), piece); });
+    if (!good) return refuse(gis, path);
   }
   const track::Column *e = g.find("easting_axis"), *n = g.find("northing_axis");
   if (quality != nullptr && e != nullptr) {
     for (const track::Exceedance& x : quality->exceedances) {
       if (!std::isfinite(e->value[x.index])) continue;
-      if (!put("EXCEEDANCES", OGRPoint(e->value[x.index], n->value[x.index]))) return refuse(path);
+      if (!put("EXCEEDANCES", point_at(gis, e->value[x.index], n->value[x.index]).get())) return refuse(gis, path);
     }
   }
   return {};

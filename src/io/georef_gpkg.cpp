@@ -1,43 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gdal_priv.h>
-#include <ogrsf_frmts.h>
-
 #include <cmath>
-#include <memory>
 
+#include "gdal.hpp"
 #include "versine/io/georef_result.hpp"
 
 namespace versine::io {
 
 namespace {
 
-OGRLayer* make_layer(GDALDataset& set, const char* name, OGRSpatialReference& crs, OGRwkbGeometryType type,
-                     std::initializer_list<std::pair<const char*, OGRFieldType>> fields) {
-  OGRLayer* layer = set.CreateLayer(name, &crs, type, nullptr);
+OGRLayerH make_layer(const Gdal& gdal, GDALDatasetH set, const char* name, OGRSpatialReferenceH crs,
+                     OGRwkbGeometryType type, std::initializer_list<std::pair<const char*, OGRFieldType>> fields) {
+  OGRLayerH layer = gdal.GDALDatasetCreateLayer(set, name, crs, type, nullptr);
   for (const auto& [field, kind] : fields) {
-    OGRFieldDefn def(field, kind);
-    if (layer != nullptr && layer->CreateField(&def) != OGRERR_NONE) return nullptr;
+    if (layer != nullptr && !add_gdal_field(gdal, layer, field, kind)) return nullptr;
   }
   return layer;
 }
 
-bool add_path(OGRLayer& layer, const georef::Map& map, const georef::PathSolution& p, int r, int k, int i) {
-  const std::unique_ptr<OGRFeature> f(OGRFeature::CreateFeature(layer.GetLayerDefn()));
-  f->SetField(0, r), f->SetField(1, k), f->SetField(2, i), f->SetField(3, p.probability);
-  OGRLineString line;
+bool add_path(const Gdal& gdal, OGRLayerH layer, const georef::Map& map, const georef::PathSolution& p, int r, int k,
+              int i) {
+  const auto f = owned<GdalFeature>(gdal, gdal.OGR_F_Create(gdal.OGR_L_GetLayerDefn(layer)));
+  gdal.OGR_F_SetFieldInteger(f.get(), 0, r);
+  gdal.OGR_F_SetFieldInteger(f.get(), 1, k);
+  gdal.OGR_F_SetFieldInteger(f.get(), 2, i);
+  gdal.OGR_F_SetFieldDouble(f.get(), 3, p.probability);
+  const auto line = owned<GdalGeometry>(gdal, gdal.OGR_G_CreateGeometry(wkbLineString));
   const double from = std::max(0.0, p.motion.distance.front()),
                to = std::min(p.coordinates.length(), p.motion.distance.back());
   const auto steps = std::max(2, static_cast<int>((to - from) / 10.0) + 2);
   for (int s = 0; s < steps; ++s) {
     const Eigen::Vector2d q = p.coordinates.position(from + (to - from) * s / (steps - 1)) + map.network.origin;
-    line.addPoint(q.x(), q.y());
+    gdal.OGR_G_AddPoint_2D(line.get(), q.x(), q.y());
   }
-  f->SetGeometry(&line);
-  return layer.CreateFeature(f.get()) == OGRERR_NONE;
+  gdal.OGR_F_SetGeometry(f.get(), line.get());
+  return gdal.OGR_L_CreateFeature(layer, f.get()) == OGRERR_NONE;
 }
 
-bool add_positions(OGRLayer& layer, const georef::Map& map, const georef::JourneyResult& j, int r, int k,
-                   double interval) {
+bool add_positions(const Gdal& gdal, OGRLayerH layer, const georef::Map& map, const georef::JourneyResult& j, int r,
+                   int k, double interval) {
   const auto& best = j.paths.front();
   const auto every = static_cast<std::size_t>(std::max(1.0, std::round(interval / j.grid)));
   for (std::size_t i = 0; i < j.steps; i += every) {
@@ -45,15 +45,20 @@ bool add_positions(OGRLayer& layer, const georef::Map& map, const georef::Journe
     const auto place = best.coordinates.place(d);
     const auto& track = map.network.tracks[place.track.track];
     const Eigen::Vector2d q = best.coordinates.position(d) + map.network.origin;
-    const std::unique_ptr<OGRFeature> f(OGRFeature::CreateFeature(layer.GetLayerDefn()));
-    f->SetField(0, r), f->SetField(1, k);
-    f->SetField(2, (j.start + Duration::from_seconds(j.grid * static_cast<double>(i))).seconds());
-    f->SetField(3, track.line_id.c_str()), f->SetField(4, track.line_offset + place.distance);
-    f->SetField(5, static_cast<double>(best.motion.speed[i]));
-    f->SetField(6, static_cast<double>(best.motion.sigma_distance[i])), f->SetField(7, best.probability);
-    OGRPoint point(q.x(), q.y());
-    f->SetGeometry(&point);
-    if (layer.CreateFeature(f.get()) != OGRERR_NONE) return false;
+    const auto f = owned<GdalFeature>(gdal, gdal.OGR_F_Create(gdal.OGR_L_GetLayerDefn(layer)));
+    gdal.OGR_F_SetFieldInteger(f.get(), 0, r);
+    gdal.OGR_F_SetFieldInteger(f.get(), 1, k);
+    gdal.OGR_F_SetFieldString(f.get(), 3, track.line_id.c_str());
+    const auto set = [&](int field, double value) { gdal.OGR_F_SetFieldDouble(f.get(), field, value); };
+    set(2, (j.start + Duration::from_seconds(j.grid * static_cast<double>(i))).seconds());
+    set(4, track.line_offset + place.distance);
+    set(5, static_cast<double>(best.motion.speed[i]));
+    set(6, static_cast<double>(best.motion.sigma_distance[i]));
+    set(7, best.probability);
+    const auto point = owned<GdalGeometry>(gdal, gdal.OGR_G_CreateGeometry(wkbPoint));
+    gdal.OGR_G_AddPoint_2D(point.get(), q.x(), q.y());
+    gdal.OGR_F_SetGeometry(f.get(), point.get());
+    if (gdal.OGR_L_CreateFeature(layer, f.get()) != OGRERR_NONE) return false;
   }
   return true;
 }
@@ -62,25 +67,22 @@ bool add_positions(OGRLayer& layer, const georef::Map& map, const georef::Journe
 
 Expected<void> write_georef_gpkg(const std::filesystem::path& path, const georef::Map& map,
                                  const GeorefResults& results, double interval) {
+  const auto api = gdal(GdalDrivers::geopackage);
+  if (!api) return tl::unexpected(api.error());
+  const Gdal& g = **api;
   const auto refuse = [&] {
     return fail({.file = path.string(),
                  .found = "a file that cannot be written",
                  .expected = "a writable folder with space",
-                 .advice = CPLGetLastErrorMsg()});
+                 .advice = g.CPLGetLastErrorMsg()});
   };
-  GDALAllRegister();
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GPKG");
-  if (driver == nullptr) return refuse();
-  GDALDataset* set = driver->Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr);
+  const GdalDataset set = create_gdal_file(g, "GPKG", path.c_str());
   if (set == nullptr) return refuse();
-  const std::unique_ptr<GDALDataset, void (*)(GDALDataset*)> owner(set, [](GDALDataset* d) { GDALClose(d); });
-  OGRSpatialReference crs;
-  crs.SetFromUserInput(map.network.projection.wkt().c_str());
-  crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  OGRLayer* paths =
-      make_layer(*set, "paths", crs, wkbLineString,
+  const GdalCrs crs = make_gdal_crs(g, map.network.projection.wkt().c_str());
+  OGRLayerH paths =
+      make_layer(g, set.get(), "paths", crs.get(), wkbLineString,
                  {{"recording", OFTInteger}, {"journey", OFTInteger}, {"path", OFTInteger}, {"probability", OFTReal}});
-  OGRLayer* points = make_layer(*set, "positions", crs, wkbPoint,
+  OGRLayerH points = make_layer(g, set.get(), "positions", crs.get(), wkbPoint,
                                 {{"recording", OFTInteger},
                                  {"journey", OFTInteger},
                                  {"time_s", OFTReal},
@@ -89,20 +91,25 @@ Expected<void> write_georef_gpkg(const std::filesystem::path& path, const georef
                                  {"speed_mps", OFTReal},
                                  {"sigma_m", OFTReal},
                                  {"probability", OFTReal}});
-  if (paths == nullptr || points == nullptr || set->StartTransaction() != OGRERR_NONE) return refuse();
+  if (paths == nullptr || points == nullptr || g.GDALDatasetStartTransaction(set.get(), FALSE) != OGRERR_NONE)
+    return refuse();
   for (std::size_t r = 0; r < results.size(); ++r) {
     if (results[r] == nullptr) continue;
     for (std::size_t k = 0; k < results[r]->journeys.size(); ++k) {
       const auto& j = results[r]->journeys[k];
       const int rn = static_cast<int>(r) + 1, kn = static_cast<int>(k) + 1;
       for (std::size_t p = 0; p < j.paths.size(); ++p) {
-        if (!add_path(*paths, map, j.paths[p], rn, kn, static_cast<int>(p) + 1)) return refuse();
+        if (!add_path(g, paths, map, j.paths[p], rn, kn, static_cast<int>(p) + 1)) return refuse();
       }
-      if (!add_positions(*points, map, j, rn, kn, interval)) return refuse();
+      if (!add_positions(g, points, map, j, rn, kn, interval)) return refuse();
     }
   }
-  if (set->CommitTransaction() != OGRERR_NONE) return refuse();
+  if (g.GDALDatasetCommitTransaction(set.get()) != OGRERR_NONE) return refuse();
   return {};
+}
+
+void prepare_georef_gpkg() {
+  (void)gdal(GdalDrivers::geopackage);  // the writer tells what went wrong
 }
 
 }  // namespace versine::io

@@ -19,5 +19,8 @@ using GeorefResults = std::vector<const georef::RecordingResult*>;
 /// and layer `paths` (a line for each plausible path).
 [[nodiscard]] Expected<void> write_georef_gpkg(const std::filesystem::path& path, const georef::Map& map,
                                                const GeorefResults& results, double interval);
+/// Loads the library that the GeoPackage is written with (40 ms, from any thread): what else there is to do meanwhile
+/// hides it. May be left out.
+void prepare_georef_gpkg();
 
 }  // namespace versine::io

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "versine/app/job_run.hpp"
 #include "versine/app/progress_file.hpp"
@@ -204,6 +205,9 @@ Expected<GeorefRun> run_georef(const fs::path& job, std::span<const std::string>
   if (!config) return tl::unexpected(config.error());
   if (auto done = check_report(config->report); !done) return tl::unexpected(done.error());
   config->run_online = online;
+  // Beside reading and georeferencing; awaited when it goes out of scope, also after an error.
+  std::jthread prepared;
+  if (config->gpkg) prepared = std::jthread(io::prepare_georef_gpkg);
   auto folder = io::ResultFolder::create(result_target(job, output));
   if (!folder) return tl::unexpected(folder.error());
   ProgressFile visible(progress, *folder);
