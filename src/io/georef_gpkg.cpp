@@ -65,7 +65,7 @@ bool add_positions(const Gdal& gdal, OGRLayerH layer, const georef::Map& map, co
 
 }  // namespace
 
-Expected<void> write_georef_gpkg(const std::filesystem::path& path, const georef::Map& map,
+Expected<void> write_georef_gpkg(const std::filesystem::path& path, const georef::Map& map, const std::string& wkt,
                                  const GeorefResults& results, double interval) {
   const auto api = gdal(GdalDrivers::geopackage);
   if (!api) return tl::unexpected(api.error());
@@ -78,7 +78,7 @@ Expected<void> write_georef_gpkg(const std::filesystem::path& path, const georef
   };
   const GdalDataset set = create_gdal_file(g, "GPKG", path.c_str());
   if (set == nullptr) return refuse();
-  const GdalCrs crs = make_gdal_crs(g, map.network.projection.wkt().c_str());
+  const GdalCrs crs = make_gdal_crs(g, wkt.c_str());
   OGRLayerH paths =
       make_layer(g, set.get(), "paths", crs.get(), wkbLineString,
                  {{"recording", OFTInteger}, {"journey", OFTInteger}, {"path", OFTInteger}, {"probability", OFTReal}});

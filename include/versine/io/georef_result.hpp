@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "versine/core/error.hpp"
@@ -15,10 +16,11 @@ using GeorefResults = std::vector<const georef::RecordingResult*>;
 /// sigma_speed_mps}, its residuals, and attributes probability, log_likelihood, log_prior, tracks.
 [[nodiscard]] Expected<void> write_georef_hdf5(const std::filesystem::path& path, const georef::Map& map,
                                                const GeorefResults& results);
-/// GeoPackage in the network's projection: layer `positions` (points every `interval` s of the most probable paths)
-/// and layer `paths` (a line for each plausible path).
+/// GeoPackage in the network's projection, whose `wkt` is given because a projection is for one thread at a time: layer
+/// `positions` (points every `interval` s of the most probable paths) and layer `paths` (a line for each plausible
+/// path).
 [[nodiscard]] Expected<void> write_georef_gpkg(const std::filesystem::path& path, const georef::Map& map,
-                                               const GeorefResults& results, double interval);
+                                               const std::string& wkt, const GeorefResults& results, double interval);
 /// Loads the library that the GeoPackage is written with (40 ms, from any thread): what else there is to do meanwhile
 /// hides it. May be left out.
 void prepare_georef_gpkg();

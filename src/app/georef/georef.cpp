@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <functional>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -179,20 +181,29 @@ Expected<void> write_results(const GeorefConfig& c, const fs::path& folder, cons
                              int threads, Progress& progress) {
   std::vector<const georef::RecordingResult*> results;
   for (const auto& o : outcomes) results.push_back(o.result ? &*o.result : nullptr);
-  // The map's projection is for one thread at a time; HDF5 does not ask it.
-  const auto with_projection = [&] {
-    auto done = write_georef_tables(folder, map, outcomes, c.options, c.csv_interval);
-    if (done) done = write_georef_index(folder, map, outcomes);
-    if (done && c.gpkg) done = io::write_georef_gpkg(folder / "result.gpkg", map, results, c.csv_interval);
-    if (done && c.run_online) done = write_online_csv(folder, map, online);
-    return done;
-  };
-  Expected<void> done, hdf5;
-  parallel_for(2, thread_count(threads), [&](std::size_t i) {
-    if (i == 0) done = with_projection();
-    if (i == 1 && c.hdf5) hdf5 = io::write_georef_hdf5(folder / "georef.h5", map, results);
-  });
-  if (done) done = hdf5;
+  // The map's projection is for one thread at a time: of these, only the tables and the index ask it.
+  const std::string crs = map.network.projection.wkt();
+  const std::array<std::function<Expected<void>()>, 3> parts{
+      [&]() -> Expected<void> {
+        if (!c.gpkg) return {};
+        return io::write_georef_gpkg(folder / "result.gpkg", map, crs, results, c.csv_interval);
+      },
+      [&] {
+        auto done = write_georef_tables(folder, map, outcomes, c.options, c.csv_interval);
+        if (done) done = write_georef_index(folder, map, outcomes);
+        if (done && c.run_online) done = write_online_csv(folder, map, online);
+        return done;
+      },
+      [&]() -> Expected<void> {
+        if (!c.hdf5) return {};
+        return io::write_georef_hdf5(folder / "georef.h5", map, results);
+      }};
+  std::array<Expected<void>, 3> written;
+  parallel_for(parts.size(), thread_count(threads), [&](std::size_t i) { written[i] = parts[i](); });
+  Expected<void> done;
+  for (const auto& one : written) {
+    if (done) done = one;
+  }
   if (done) done = stamp_monitoring(folder, map, outcomes, c.monitoring, progress);
   return done;
 }
