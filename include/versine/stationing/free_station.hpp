@@ -15,8 +15,8 @@ namespace versine::stationing {
 
 /// The plumb line as another sensor tells it.
 struct Plumb {
-  Eigen::Vector3d up_s = Eigen::Vector3d::UnitZ();  ///< up in the instrument's axes, length 1
-  double sigma = 0.0;                               ///< rad, each axis
+  Eigen::Vector3d up_s = -Eigen::Vector3d::UnitZ();  ///< up in the instrument's axes, length 1
+  double sigma = 0.0;                                ///< rad, each axis
 };
 
 struct FreeStationOptions {

@@ -52,8 +52,8 @@ struct Atmosphere {
 /// One set-up of the instrument with all that was read there.
 /// Which way is up, as accelerometers on the trolley feel it while it stands.
 struct FeltUp {
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< in the accelerometers' axes, length 1
-  double sigma = 0.0;                             ///< of what differs from station to station, each axis, rad
+  Eigen::Vector3d up = -Eigen::Vector3d::UnitZ();  ///< in the accelerometers' axes, length 1
+  double sigma = 0.0;                              ///< of what differs from station to station, each axis, rad
 };
 
 struct Stationing {

@@ -73,6 +73,17 @@ std::vector<LandmarkSample> in_order(std::vector<Caused> all, const geodesy::Loc
   return landmarks;
 }
 
+/// A station's pitch comes from the heights of the control points that its neighbours use for theirs; the filter would
+/// take height and pitch for independent there. Heights tell it the slope between stations anyway, and the better.
+void leave_pitch_open(std::vector<LandmarkSample>& landmarks, const Eigen::Vector3d& mounting) {
+  constexpr double open = 1e-3;  // rad
+  const Eigen::Quaterniond q_bs = geodesy::to_quaternion({mounting.x(), mounting.y(), mounting.z()});
+  for (LandmarkSample& l : landmarks) {
+    const Eigen::Vector3d across = (*l.q_ns * q_bs.conjugate()) * Eigen::Vector3d::UnitY();
+    l.attitude_covariance += open * open * across * across.transpose();
+  }
+}
+
 }  // namespace
 
 std::vector<stationing::Stationing> take_prism(stationing::Stationing& s, const std::string& prism) {
@@ -109,7 +120,9 @@ std::vector<LandmarkSample> station_landmarks(const StationingOutcome& stations,
     }
     all.push_back({std::move(l), control_causes(s, stations.network)});
   }
-  return in_order(std::move(all), stations.frame, p.mounting ? 6 : 3);
+  auto landmarks = in_order(std::move(all), stations.frame, p.mounting ? 6 : 3);
+  if (p.mounting) leave_pitch_open(landmarks, *p.mounting * units::deg);
+  return landmarks;
 }
 
 std::vector<LandmarkSample> prism_landmarks(const StationingOutcome& stations, const PrismStops& stops,

@@ -234,7 +234,7 @@ void describe_instrument_mounting(ConfigVisitor& v, SurveyConfig& c) {
   v.value(
       "mounting_deg", t.mounting,
       {.doc = "Attitude of the instrument on the trolley against the IMU: roll, pitch, yaw that turn the IMU's axes "
-              "into the instrument's (circle's zero, right, down); given, its attitude goes to the filter too.",
+              "into the instrument's (circle's zero, right, down); given, its roll and heading go to the filter too.",
        .unit = "deg"});
   if (t.mounting) {
     const Eigen::Vector3d m = *t.mounting * units::deg;
