@@ -28,7 +28,7 @@ test: build
 headers: setup $(BUILD)/build.ninja
 	cmake --build $(BUILD) -j $(JOBS) --target versine_headers
 
-# Text readers and integrity checks under the address and undefined-behaviour sanitizers.
+# Text readers, integrity checks, georeferencing and stationing under the address and undefined-behaviour sanitizers.
 sanitize: setup
 	JOBS=$(JOBS) scripts/sanitize
 

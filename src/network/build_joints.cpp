@@ -34,7 +34,9 @@ struct Cell {
 };
 struct CellHash {
   std::size_t operator()(const Cell& c) const {
-    return static_cast<std::size_t>(c.x * 0x9E3779B97F4A7C15LL ^ (c.y * 0x2545F4914F6CDD1DLL));
+    // Unsigned: the products are meant to wrap around.
+    return static_cast<std::uint64_t>(c.x) * 0x9E3779B97F4A7C15U ^
+           static_cast<std::uint64_t>(c.y) * 0x2545F4914F6CDD1DU;
   }
 };
 
