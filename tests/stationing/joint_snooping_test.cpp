@@ -146,6 +146,26 @@ TEST(JointSnooping, AccelerometersTellWhichOfTwoZenithAnglesIsWrong) {
   }
 }
 
+/// The instrument was turned on the trolley between its stations: what was felt then tells nothing, and changes
+/// nothing.
+TEST(JointSnooping, AccelerometersThatContradictMostStationsAreNotUsed) {
+  for (unsigned seed = 3000; seed < 3020; ++seed) {
+    SnoopedSurvey survey(seed, 5);
+    survey.add_blunders(15e-3);
+    const StationingRun alone = survey.run();
+    survey.feel_up(10.0 * units::arcsec);
+    for (std::size_t i = 0; i < survey.stations.size(); ++i) {
+      Eigen::Vector3d& up = survey.stations[i].felt_up->up;
+      up = Eigen::AngleAxisd(1.1 * static_cast<double>(i), Eigen::Vector3d::UnitZ()) * up;
+    }
+    const StationingRun run = survey.run();
+    ASSERT_EQ(run.stations.size(), alone.stations.size());
+    for (std::size_t i = 0; i < run.stations.size(); ++i) {
+      EXPECT_EQ(run.stations[i].position, alone.stations[i].position) << seed << " " << i;
+    }
+  }
+}
+
 /// A point that several stations see is called moved; a wrong sighting of it is not.
 TEST(JointSnooping, MovedPointAndWrongSightingAreToldApart) {
   std::size_t moved = 0, mistaken = 0;
